@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from typing import TypeAlias, TypeVar
 
 from siggen.errors import Problem
@@ -16,9 +17,28 @@ from siggen.errors import Problem
 Table: TypeAlias = tuple[tuple[str, str], ...]
 """Keys of sections, each with the one that the user wrote."""
 Value = TypeVar("Value")
-DRIVER, DRIVEN, EITHER, SEVERAL = "pinion", "gear", "either", "several"
-ROLES = (DRIVER, DRIVEN)
-"""What the gears of a mesh are to each other: the one that drives, and the one that is driven."""
+EITHER, SEVERAL = "either", "several"
+
+
+class Side(StrEnum):
+    """The two gears of a mesh: the one that drives, and the one that is driven; sections call them pinion and gear."""
+
+    DRIVER = "pinion"
+    DRIVEN = "gear"
+
+    @property
+    def number(self) -> int:
+        """0 of the driver, 1 of the driven gear."""
+        return int(self is Side.DRIVEN)
+
+    @property
+    def mate(self) -> Side:
+        """The gear that it meets."""
+        return Side.DRIVER if self is Side.DRIVEN else Side.DRIVEN
+
+
+PINION, GEAR = SECTIONS = (Side.DRIVER.value, Side.DRIVEN.value)
+"""What sections of the configuration call the gears of a mesh, and the shafts of a pair."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,9 +97,9 @@ class MeshName:
         """Driver and driven gear."""
         return self.driver, self.driven
 
-    def gear(self, role: str) -> GearName:
-        """Return the gear of a role."""
-        return self.gears[ROLES.index(role)]
+    def gear(self, side: Side) -> GearName:
+        """Return one of its gears."""
+        return self.gears[side.number]
 
     @property
     def frequency(self) -> str:
@@ -119,11 +139,11 @@ class Names:
 
     @property
     def flanks(self) -> dict[str, tuple[str, str]]:
-        """What `gear` of damage may hold: gears, and for each mesh the drawn one of both -> mesh by sections, role."""
+        """What `gear` of damage may hold: gears, and for each mesh the drawn one of both -> mesh by sections, side."""
         found: dict[str, tuple[str, str]] = {}
         for mesh in self.meshes:
-            for role, gear in zip(ROLES, mesh.gears, strict=True):
-                found.setdefault(gear.word, (mesh.inner, role))
+            for side, gear in zip(Side, mesh.gears, strict=True):
+                found.setdefault(gear.word, (mesh.inner, side))
         either = {_in(mesh.word, EITHER): (mesh.inner, EITHER) for mesh in self.meshes}
         return found if self == PLANETARY else {**found, **either}
 
@@ -172,17 +192,27 @@ class Names:
 
 
 PAIR = Names(
-    (MeshName("", "", GearName(DRIVER, DRIVER, DRIVER, "the pinion"), GearName(DRIVEN, DRIVEN, DRIVEN, "the gear")),),
-    (ShaftName(DRIVER, DRIVER, "the pinion's shaft"), ShaftName(DRIVEN, DRIVEN, "the gear's shaft")),
+    (
+        MeshName(
+            "",
+            "",
+            GearName(PINION, PINION, PINION, "the pinion"),
+            GearName(GEAR, GEAR, GEAR, "the gear"),
+        ),
+    ),
+    (
+        ShaftName(PINION, PINION, "the pinion's shaft"),
+        ShaftName(GEAR, GEAR, "the gear's shaft"),
+    ),
 )
 """Of two gears without names of their own."""
-PLANET = GearName(DRIVEN, "planet", "planet_1", "the planet")
+PLANET = GearName(GEAR, "planet", "planet_1", "the planet")
 PLANETARY = Names(
     (
-        MeshName("", "", GearName(DRIVER, "sun", "sun", "the sun"), PLANET),
+        MeshName("", "", GearName(PINION, "sun", "sun", "the sun"), PLANET),
         MeshName("ring", "ring", PLANET, GearName("ring.gear", "ring", "ring", "the ring")),
     ),
-    (ShaftName(DRIVER, "sun", "the sun's shaft"), ShaftName(DRIVEN, "carrier", "the carrier's shaft")),
+    (ShaftName(PINION, "sun", "the sun's shaft"), ShaftName(GEAR, "carrier", "the carrier's shaft")),
 )
 """Of a planetary set, whose first mesh is that of the sun with its first planet."""
 

@@ -12,7 +12,7 @@ from siggen.faults.ball_geometry import BallGeometry
 from siggen.faults.bearing_spall import BearingSpalls
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.keys.drawing import corners
-from siggen.names import ROLES
+from siggen.names import Side
 
 STIFFNESSES = ("bearing_stiffness_x_n_per_m", "bearing_stiffness_y_n_per_m")
 """Keys of a shaft's section that its `bearing` replaces."""
@@ -20,7 +20,7 @@ STIFFNESSES = ("bearing_stiffness_x_n_per_m", "bearing_stiffness_y_n_per_m")
 
 def bearing_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
     """Yield the problems of both shafts at the bounds of all numbers."""
-    for role in ROLES:
+    for role in Side:
         given = [one for one in corners(partial(gearbox.ball, role)) if one is not None]
         crowded = [one for one in given if one.ball_diameter_m >= one.room_m]
         if crowded:

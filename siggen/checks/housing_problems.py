@@ -22,7 +22,7 @@ from siggen.gearbox.housing_numbers import PlateNumbers
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import HIGH, LOW, Number, bounds, constant
-from siggen.names import ROLES
+from siggen.names import Side
 
 THICKEST = 0.25
 """Thickness of a wall over the least inner length of its box; a thicker one is no plate."""
@@ -47,7 +47,7 @@ def housing_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
         shafts = gearbox.shafts(lambda _: HIGH)
         contents, proportions, _ = specimen_layout(most, shafts, pair)
         if shafts is not None:
-            yield from _bearing_problems({role: getattr(shafts, role).diameter_mm for role in ROLES}, pair)
+            yield from _bearing_problems({role: getattr(shafts, role).diameter_mm for role in Side}, pair)
         yield from _problems(least, most, contents, proportions.wall_m)
 
 
@@ -66,7 +66,7 @@ def _problems(least: PlateNumbers, most: PlateNumbers, contents: Contents, wall_
 def _bearing_problems(diameters_mm: Mapping[str, float], pair: GearPair) -> Iterator[Problem]:
     """Yield shafts whose bearings have no room beside each other in one wall."""
     most_mm = 2e3 * pair.working_centre_distance_m / LEAST_BEARING
-    thicker = max(ROLES, key=lambda role: diameters_mm[role])
+    thicker = max(Side, key=lambda role: diameters_mm[role])
     if sum(diameters_mm.values()) > most_mm:
         received = f"{diameters_mm[thicker]:g}, with the other shaft {sum(diameters_mm.values()):g} mm together"
         allowed = f"allowed: at most {most_mm:.4g} mm together, so that both bearings fit into one wall of the housing"

@@ -30,7 +30,7 @@ from siggen.gears.geometry.gear_pair import GearPair, GeometryProblem
 from siggen.gears.geometry.internal_pair import InternalPair
 from siggen.gears.stiffness.coupled_pairs import StiffTeethError
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
-from siggen.names import ROLES
+from siggen.names import GEAR, PINION, Side
 
 KEYS = {
     "teeth": "teeth",
@@ -80,10 +80,9 @@ def _problems(gearbox: PossibleGearbox) -> tuple[Problem, ...]:
 def _outside_tolerances(mesh: PossibleMesh) -> Iterator[Problem]:
     """Yield gears that the standard knows no tolerances of; a planet has those of its mesh with the sun."""
     for pair in mesh.pairs:
-        members = ("gear",) if isinstance(pair, InternalPair) else ROLES
-        for which in members:
-            for problem in outside_iso_1328(pair.member(which), pair.face_width_m, which, pair.helix_rad):
-                received = f"tolerances for a {mesh.name.gear(which).word} with {problem.name} {problem.received}"
+        for side in (Side.DRIVEN,) if isinstance(pair, InternalPair) else Side:
+            for problem in outside_iso_1328(pair.member(side), pair.face_width_m, side, pair.helix_rad):
+                received = f"tolerances for a {mesh.name.gear(side).word} with {problem.name} {problem.received}"
                 yield Problem("manufacture", received, f"{problem.allowed}; or null")
 
 
@@ -99,7 +98,7 @@ def _coupling_problems(mesh: PossibleMesh, gearbox: PossibleGearbox) -> Iterator
             received = f"'{gearbox.config.stiffness.coupling}' with beam: {options.beam}, {stiff}"
             low, high = sorted((pair.pinion.teeth, pair.gear.teeth))
             if high > USUAL_RATIO * low:
-                name = "gear" if pair.gear.teeth == high else "pinion"
+                name = GEAR if pair.gear.teeth == high else PINION
                 received = f"{high} against {low}, a ratio of {high / low:.3g}; stiffness.coupling is then {received}"
                 allowed = f"allowed: a ratio up to {USUAL_RATIO:g}, as pairs have; else coupling: none"
                 yield Problem(f"{mesh.at}gears.{name}.teeth", received, allowed)

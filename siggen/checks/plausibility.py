@@ -22,7 +22,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.keys.number import LOW, bounds
 from siggen.keys.usual import unusual
-from siggen.names import ROLES
+from siggen.names import Side
 from siggen.planning.plan import SPLITS, split_of
 from siggen.sensors.sensor import SensorBase
 
@@ -160,9 +160,9 @@ class _SizesCompared:
             yield from self.of(path, what, (1.0, 230.0), "is it in GPa?")
             what, path = "face width over module", f"{at}gears.face_width_mm"
             yield from self.of(path, what, (1.5, 40.0), "is it in mm?", module)
-            for role in ROLES:
-                what, path = "bore over root circle", f"{at}gears.{role}.bore_radius_mm"
-                yield from self.of(path, what, (0.08, 0.95), "a radius, in mm", 1e3 * pair.member(role).root_radius_m)
+            for side in Side:
+                what, path = "bore over root circle", f"{at}gears.{side}.bore_radius_mm"
+                yield from self.of(path, what, (0.08, 0.95), "a radius, in mm", 1e3 * pair.member(side).root_radius_m)
 
     def load(self) -> Iterator[UsualQuantity]:
         """Yield speeds and torques of operating points."""
@@ -217,12 +217,15 @@ class _SizesCompared:
         number, pair, torque = self.gearbox.number, self.pair, self.gearbox.largest_torque_nm
         disc_kg_m2 = disc_inertia_kg_m2(pair.pinion, pair.face_width_m)
         behind_nm = torque * pair.gear.teeth / pair.pinion.teeth
-        both = ("input", "motor", "pinion", 1.5e3, torque), ("output", "load", "gear", 1e5, behind_nm)  # such as a mill
-        for end, machine, role, most, torque_nm in both:
+        both = (
+            ("input", "motor", Side.DRIVER, 1.5e3, torque),
+            ("output", "load", Side.DRIVEN, 1e5, behind_nm),
+        )  # such as a mill
+        for end, machine, side, most, torque_nm in both:
             stiffness, inertia = f"dynamics.{end}_coupling.stiffness_nm_per_rad", f"dynamics.{machine}_inertia_kg_m2"
             hint = "is the stiffness in N m/rad?"
             yield self.under(stiffness, "twist at full load [rad]", (3e-4, 1.0), hint, torque_nm)
-            own = self.gearbox.rotor(role, pair, lambda _: LOW).inertia_kg_m2, bounds(number(inertia))[0]
+            own = self.gearbox.rotor(side, pair, lambda _: LOW).inertia_kg_m2, bounds(number(inertia))[0]
             critical = 2.0 * sqrt(bounds(number(stiffness))[0] / sum(1.0 / one for one in own))
             damping, what = f"dynamics.{end}_coupling.damping_nm_s_per_rad", "damping over the critical one"
             if bounds(number(damping))[1] > 0.0:

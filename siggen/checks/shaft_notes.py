@@ -11,7 +11,7 @@ from siggen.gearbox.configured import state_config
 from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.gearbox.specimen import Specimen
-from siggen.names import ROLES
+from siggen.names import Side
 from siggen.specimen.loaded_bearings import BEARINGS
 from siggen.specimen.structure import specimen_bearings
 
@@ -33,14 +33,14 @@ def shaft_notes(gearbox: PossibleGearbox) -> Iterator[str]:
                 f"{1e6 * tilts.largest_rad:.0f} urad; at {1e6 * tilts.limit_rad:.0f} an end meets the other flank: "
                 "such gearboxes end as outside_model; stiffer bearings, or a gear_position nearer to 0.5, prevent it"
             )
-    if any(getattr(dynamics, role).bearing is not None for role in ROLES):
+    if any(getattr(dynamics, role).bearing is not None for role in Side):
         yield from _bearing_notes(gearbox)
 
 
 def _bearing_notes(gearbox: PossibleGearbox) -> Iterator[str]:
     """Yield the stiffness of both bearings of each such shaft of gearbox 0, and that of states that change it."""
     config = gearbox.config
-    for role in ROLES:  # a preset that a file extends may have given them
+    for role in Side:  # a preset that a file extends may have given them
         rotor = getattr(config.dynamics, role)
         given = [key for key in STIFFNESSES if key in rotor.model_fields_set]
         if rotor.bearing is not None and given:

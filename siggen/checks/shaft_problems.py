@@ -8,7 +8,7 @@ from siggen.errors import Problem
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import corners
-from siggen.names import ROLES
+from siggen.names import Side
 
 
 def shaft_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
@@ -25,20 +25,20 @@ def shaft_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
         yield Problem("dynamics.shafts", received, allowed)
     else:
         for pair in gearbox.meshes[0].pairs:
-            for role in ROLES:
-                yield from _of_shaft(gearbox, role, pair)
+            for side in Side:
+                yield from _of_shaft(gearbox, side, pair)
 
 
-def _of_shaft(gearbox: PossibleGearbox, role: str, pair: GearPair) -> Iterator[Problem]:
-    shafts = [*corners(gearbox.shaft(role, pair))]
+def _of_shaft(gearbox: PossibleGearbox, side: Side, pair: GearPair) -> Iterator[Problem]:
+    shafts = [*corners(gearbox.shaft(side, pair))]
     least_mm, shares = 1e3 * min(one.span_m for one in shafts), [one.gear_share for one in shafts]
     nearer_mm = least_mm * min(*shares, *(1.0 - share for share in shares))
     half_mm = 0.5e3 * pair.face_width_m
     if nearer_mm < half_mm:
         places = f"gear_position {min(shares):g} to {max(shares):g} a bearing {nearer_mm:g} mm from the middle"
         allowed = f"allowed: bearings beside the gear, at least {half_mm:g} mm from its middle (gears.face_width_mm)"
-        yield Problem(f"dynamics.shafts.{role}.bearing_span_mm", f"{least_mm:g}, with {places}", allowed)
-    thickest_mm, root_mm = 1e3 * max(one.diameter_m for one in shafts), 2e3 * pair.member(role).root_radius_m
+        yield Problem(f"dynamics.shafts.{side}.bearing_span_mm", f"{least_mm:g}, with {places}", allowed)
+    thickest_mm, root_mm = 1e3 * max(one.diameter_m for one in shafts), 2e3 * pair.member(side).root_radius_m
     if thickest_mm >= root_mm:
         allowed = f"allowed: less than the root diameter of its gear, {root_mm:.4g} mm"
-        yield Problem(f"dynamics.shafts.{role}.diameter_mm", f"{thickest_mm:g}", allowed)
+        yield Problem(f"dynamics.shafts.{side}.diameter_mm", f"{thickest_mm:g}", allowed)

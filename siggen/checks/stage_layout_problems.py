@@ -20,7 +20,7 @@ from siggen.errors import Problem
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import Number, bounds
-from siggen.names import ROLES
+from siggen.names import Side
 from siggen.specimen.staged_structure import LEAST_SPAN
 
 ON_ONE_AXIS_MM = 0.02
@@ -55,8 +55,8 @@ def _axes(gearbox: PossibleGearbox, meshes: Sequence[Sequence[GearPair]]) -> Ite
     stages, names = gearbox.config.stages, gearbox.config.names.shafts
     turned = [np.zeros(1), *(np.radians(_values(*bounds(stage.direction_deg))) for stage in stages)]
     distances = [_values(*_ends(pair.working_centre_distance_m for pair in pairs)) for pairs in meshes]
-    tips = [[max(pair.member(role).tip_radius_m for pair in pairs) for role in ROLES] for pairs in meshes]
-    driving, driven = ([max(pair.member(role).bore_radius_m for pair in pairs) for pairs in meshes] for role in ROLES)
+    tips = [[max(pair.member(role).tip_radius_m for pair in pairs) for role in Side] for pairs in meshes]
+    driving, driven = ([max(pair.member(role).bore_radius_m for pair in pairs) for pairs in meshes] for role in Side)
     shafts = [driving[0], *map(min, driven, driving[1:]), driven[-1]]
     for first, last in combinations(range(len(shafts)), 2):
         if last < first + 2:

@@ -31,7 +31,7 @@ from siggen.gears.contact.table_columns import approach_under_m
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import Uniforms, corners
 from siggen.keys.number import MIDDLE
-from siggen.names import ROLES
+from siggen.names import Side
 from siggen.specimen.loaded_bearings import BEARINGS, on_loaded_bearing, shaft_load_n
 
 PLACES = (0.125, 0.375, 0.625, 0.875)
@@ -68,7 +68,7 @@ class FlankTilts(NamedTuple):
 
     def median_rad(self, **diameter_m: float) -> float:
         """Return the size that half of the gearboxes exceed, each place of one gear with each of the other."""
-        pinion, gear = (tilts(diameter_m.get(role)) for role, tilts in self.over_places_rad.items())
+        pinion, gear = (tilts(diameter_m.get(side)) for side, tilts in self.over_places_rad.items())
         return float(np.median(np.abs(np.add.outer(pinion, gear))))
 
 
@@ -78,46 +78,46 @@ def flank_tilts(gearbox: PossibleGearbox, pair: GearPair) -> FlankTilts:
     force_n = torque_nm / pair.pinion.base_radius_m
     approach_m = approach_under_m(pair, gearbox.bending, force_n) if force_n > 0.0 else 0.0
     ends = []
-    for role in ROLES:
-        shafts = corners(gearbox.shaft(role, pair))
-        bearings = corners(partial(_bearing, gearbox, role, pair), "stiffness_x", "stiffness_y", ".bearing.")
-        tilts = [static_tilt_rad(*one, pair, role, torque_nm) for one in product(shafts, bearings)]
+    for side in Side:
+        shafts = corners(gearbox.shaft(side, pair))
+        bearings = corners(partial(_bearing, gearbox, side, pair), "stiffness_x", "stiffness_y", ".bearing.")
+        tilts = [static_tilt_rad(*one, pair, side, torque_nm) for one in product(shafts, bearings)]
         ends.append((min(tilts), max(tilts)))
     low, high = (sum(each) for each in zip(*ends, strict=True))
     return FlankTilts(
         2.0 * (gearbox.law(lambda _: MIDDLE).backlash_m + approach_m) / pair.face_width_m,
         max(-low, high),
-        {role: partial(_over_places_rad, gearbox, pair, role) for role in ROLES},
+        {side: partial(_over_places_rad, gearbox, pair, side) for side in Side},
     )
 
 
-def _bearing(gearbox: PossibleGearbox, role: str, pair: GearPair, uniform: Uniforms) -> Bearing:
+def _bearing(gearbox: PossibleGearbox, side: Side, pair: GearPair, uniform: Uniforms) -> Bearing:
     """Return the bearings of a shaft, under the largest torque where they follow the load."""
-    rotor, ball = gearbox.rotor(role, pair, uniform), gearbox.ball(role, uniform)
+    rotor, ball = gearbox.rotor(side, pair, uniform), gearbox.ball(side, uniform)
     if ball is None:
         return rotor.bearing
-    load_n = shaft_load_n(pair, role, gearbox.largest_torque_nm, rotor.mass_kg, housed=True)
+    load_n = shaft_load_n(pair, side, gearbox.largest_torque_nm, rotor.mass_kg, housed=True)
     return on_loaded_bearing(rotor, loaded_bearing(ball, load_n / BEARINGS)).bearing
 
 
 def _over_places_rad(
-    gearbox: PossibleGearbox, pair: GearPair, role: str, diameter_m: float | None = None
+    gearbox: PossibleGearbox, pair: GearPair, side: Side, diameter_m: float | None = None
 ) -> FloatArray:
     """Return tilts (4,) [rad] of one gear at equally likely places on its shaft, all other numbers in their middle."""
-    drawn, bearing, found = gearbox.shaft(role, pair), _bearing(gearbox, role, pair, lambda _: MIDDLE), []
+    drawn, bearing, found = gearbox.shaft(side, pair), _bearing(gearbox, side, pair, lambda _: MIDDLE), []
     for place in PLACES:
         shaft = drawn(lambda name, at=place: at if name.endswith("position") else MIDDLE)  # type: ignore[misc]
         shaft = shaft if diameter_m is None else replace(shaft, diameter_m=diameter_m)
-        found.append(static_tilt_rad(shaft, bearing, pair, role, gearbox.largest_torque_nm))
+        found.append(static_tilt_rad(shaft, bearing, pair, side, gearbox.largest_torque_nm))
     return np.array(found)
 
 
-def static_tilt_rad(shaft: Shaft, bearing: Bearing, pair: GearPair, role: str, torque_nm: float) -> float:
+def static_tilt_rad(shaft: Shaft, bearing: Bearing, pair: GearPair, side: Side, torque_nm: float) -> float:
     """Return the tilt [rad] of the flanks by one gear of a pair, on its shaft in its bearings, under a motor torque."""
     along, across = cos(pair.working_pressure_angle_rad), sin(pair.working_pressure_angle_rad)
     # the moment about the vertical axis per force along the line of action
-    radius_m = pair.member(role).base_radius_m / along
-    lever_m = tan(pair.base_helix_rad) * radius_m * (1.0 if role == "gear" else -1.0)
+    radius_m = pair.member(side).base_radius_m / along
+    lever_m = tan(pair.base_helix_rad) * radius_m * (1.0 if side == Side.DRIVEN else -1.0)
     per_n = along**2 * _tilt_per_n(shaft, bearing.stiffness_y_n_per_m, 0.0)
     per_n += across**2 * _tilt_per_n(shaft, bearing.stiffness_x_n_per_m, lever_m / across)
     force_n = (1.0 + tan(pair.base_helix_rad) ** 2) * torque_nm / pair.pinion.base_radius_m  # as slices feel it
@@ -136,23 +136,23 @@ def _tilt_per_n(beam: Shaft, bearing_n_per_m: float, lever_m: float) -> float:
 
 def _problem(gearbox: PossibleGearbox, pair: GearPair, tilts: FlankTilts) -> Problem:
     """Return what is wrong with the worse shaft, and the least diameter that would do beside the other one as it is."""
-    limit, role = tilts.limit_rad, max(ROLES, key=lambda one: float(np.median(np.abs(tilts.over_places_rad[one]()))))
-    path = f"dynamics.shafts.{role}.diameter_mm"
-    thin_m = min(shaft.diameter_m for shaft in corners(gearbox.shaft(role, pair)))
-    thick_m = 2.0 * pair.member(role).root_radius_m
+    limit, side = tilts.limit_rad, max(Side, key=lambda one: float(np.median(np.abs(tilts.over_places_rad[one]()))))
+    path = f"dynamics.shafts.{side}.diameter_mm"
+    thin_m = min(shaft.diameter_m for shaft in corners(gearbox.shaft(side, pair)))
+    thick_m = 2.0 * pair.member(side).root_radius_m
     received = (
         f"{gearbox.written(path)}, with which the flanks tilt by {1e6 * tilts.median_rad():.0f} urad under "
         f"{gearbox.largest_torque_nm:g} N m, with gears.youngs_modulus_gpa {pair.youngs_modulus_pa / 1e9:g} and "
-        f"dynamics.{role}.bearing_stiffness_x_n_per_m "
-        f"{gearbox.written(f'dynamics.{role}.bearing_stiffness_x_n_per_m')}"
+        f"dynamics.{side}.bearing_stiffness_x_n_per_m "
+        f"{gearbox.written(f'dynamics.{side}.bearing_stiffness_x_n_per_m')}"
     )
     allowed = f"allowed: a tilt of at most {1e6 * limit:.0f} urad, where an end of the face meets the other flank"
-    if tilts.median_rad(**{role: thick_m}) > limit:
+    if tilts.median_rad(**{side: thick_m}) > limit:
         advice = "no diameter below that of the root does; move gear_position nearer to 0.5, or take stiffer bearings"
         return Problem(path, received, f"{allowed}; {advice}")
     for _ in range(40):
         middle_m = 0.5 * (thin_m + thick_m)
-        enough = tilts.median_rad(**{role: middle_m}) <= limit
+        enough = tilts.median_rad(**{side: middle_m}) <= limit
         thin_m, thick_m = (thin_m, middle_m) if enough else (middle_m, thick_m)
     advice = f"from {np.ceil(1e4 * thick_m) / 10.0:.1f} mm on, or a gear_position nearer to 0.5"
     return Problem(path, received, f"{allowed}: {advice}")

@@ -11,6 +11,7 @@ import typer
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.life_table import cost_summary, cost_text, history_text, life_doubts, life_summary, life_table
 from siggen.cli.working import working
+from siggen.names import PINION
 from siggen.printable import printable
 
 if TYPE_CHECKING:
@@ -229,7 +230,7 @@ def _mesh_range_hz(config: Config) -> tuple[float, float]:
     from siggen.keys.number import bounds
 
     speeds = [bounds(point.speed_hz) for point in config.operating_points]
-    teeth: tuple[float, ...] = config.gears.teeth_of("pinion")
+    teeth: tuple[float, ...] = config.gears.teeth_of(PINION)
     if config.planetary is not None:
         teeth = (set_of(config.gears, config.planetary).pitches_per_turn,)
     slowest, fastest = config.variation.speed_ratios

@@ -20,11 +20,11 @@ from siggen.errors import Problem
 from siggen.keys.problems import received_text
 from siggen.keys.section import Section
 from siggen.names import (
-    DRIVEN,
-    DRIVER,
+    GEAR,
     PAIR,
+    PINION,
     PLANETARY,
-    ROLES,
+    SECTIONS,
     GearName,
     MeshName,
     Names,
@@ -43,7 +43,7 @@ def names_of(machine: MachineSection) -> Names:
     meshes = tuple(
         _mesh_name(name, machine.meshes[place], shared) for name, place in zip(inner, found.meshes, strict=True)
     )
-    of_shafts = zip((DRIVER, *(name or DRIVEN for name in inner)), found.shafts, strict=True)
+    of_shafts = zip((PINION, *(name or GEAR for name in inner)), found.shafts, strict=True)
     shafts = [(name, machine.shafts[place].name) for name, place in of_shafts]
     named = tuple(ShaftName(name, own, f"the shaft {own}") for name, own in shafts)
     return Names(meshes, named, tuple(_paths(machine)), given=True)
@@ -58,7 +58,7 @@ def names_in(machine: MachineSection | None, *, planetary: bool) -> Names:
 
 def _mesh_name(inner: str, mesh: MachineMesh, shared: Collection[str]) -> MeshName:
     gears = []
-    for role, gear in zip(ROLES, (mesh.driver, mesh.driven), strict=True):
+    for role, gear in zip(SECTIONS, (mesh.driver, mesh.driven), strict=True):
         word = f"{mesh.name}.{gear}" if gear in shared else gear  # a flank of each mesh
         gears.append(GearName(f"{inner}.{role}" if inner else role, word, gear, word))
     return MeshName(inner, mesh.name, *gears)
@@ -69,7 +69,7 @@ def _paths(machine: MachineSection) -> Iterator[tuple[str, str]]:
     found, gears = train(machine), {gear.name: index for index, gear in enumerate(machine.gears)}
     for number, place in enumerate(found.meshes):
         mesh, path = machine.meshes[place], f"stages.{number - 1}." if number else ""
-        for role, gear in zip(ROLES, (mesh.driver, mesh.driven), strict=True):
+        for role, gear in zip(SECTIONS, (mesh.driver, mesh.driven), strict=True):
             yield f"{path}gears.{role}", f"machine.gears.{gears[gear]}"
         yield f"{path}gears", f"machine.meshes.{place}"
         if number:
@@ -78,7 +78,7 @@ def _paths(machine: MachineSection) -> Iterator[tuple[str, str]]:
             yield f"{here}.span_mm", f"machine.shafts.{found.shafts[number]}.span_mm"
             yield f"{here}.gear", f"machine.shafts.{found.shafts[number + 1]}"
             yield here, f"machine.meshes.{place}"
-    for role, key, place in zip(ROLES, OF_SHAFTS, found.shafts, strict=False):
+    for role, key, place in zip(SECTIONS, OF_SHAFTS, found.shafts, strict=False):
         yield f"dynamics.{role}", f"machine.shafts.{place}"
         yield f"dynamics.shafts.{role}", f"dynamics.shafts.{key}"
 
@@ -86,15 +86,15 @@ def _paths(machine: MachineSection) -> Iterator[tuple[str, str]]:
 def short_form(raw: Mapping[str, Any], names: Names) -> tuple[dict[str, Any], list[Problem]]:
     """Return what a file says beside its machine in words of pairs, and words of the file that are none of its own."""
     short = {key: value for key, value in raw.items() if key not in (*REPLACED, "machine")}
-    short |= {"dynamics": _with_shafts(raw["dynamics"], OF_SHAFTS, ROLES)} if "dynamics" in raw else {}
+    short |= {"dynamics": _with_shafts(raw["dynamics"], OF_SHAFTS, SECTIONS)} if "dynamics" in raw else {}
     return _with_changes(short, names), [*_beside(raw), *_keys(raw)]
 
 
 def own_form(plain: Mapping[str, Any], names: Names) -> dict[str, Any]:
     """Return a configuration as plain mappings and lists as the user writes it; `short_form` of it is the same."""
     own = {key: value for key, value in plain.items() if key not in REPLACED}
-    dynamics = {key: value for key, value in own["dynamics"].items() if key not in (DRIVER, DRIVEN)}
-    own = {**own, "dynamics": _with_shafts(dynamics, ROLES, OF_SHAFTS)}
+    dynamics = {key: value for key, value in own["dynamics"].items() if key not in SECTIONS}
+    own = {**own, "dynamics": _with_shafts(dynamics, SECTIONS, OF_SHAFTS)}
     states = {
         name: {**one, "changes": {names.own_path(path): to for path, to in one["changes"].items()}}
         for name, one in own["states"].items()
@@ -111,10 +111,10 @@ def _beside(raw: Mapping[str, Any]) -> Iterator[Problem]:
 def _keys(raw: Mapping[str, Any]) -> Iterator[Problem]:
     """Yield keys of a pair alone."""
     if isinstance(dynamics := raw.get("dynamics"), Mapping):
-        for key in {*ROLES, *OF_SHAFTS} & dynamics.keys():
+        for key in {*SECTIONS, *OF_SHAFTS} & dynamics.keys():
             yield Problem(f"dynamics.{key}", received_text(dynamics[key]), "allowed with a machine: machine.shafts")
         shafts = dynamics.get("shafts")
-        for key, now in zip(ROLES, OF_SHAFTS, strict=True):
+        for key, now in zip(SECTIONS, OF_SHAFTS, strict=True):
             if isinstance(shafts, Mapping) and key in shafts:
                 yield Problem(f"dynamics.shafts.{key}", received_text(shafts[key]), f"allowed with a machine: {now}")
 
@@ -148,7 +148,7 @@ def drivetrain(machine: MachineSection) -> tuple[GearsSection, tuple[Stage, ...]
             )
         )
     rotors = (RotorSection(**_values(shafts[place], RotorSection)) for place in found.shafts)
-    return GearsSection(**_values(pairs[0], Pair)), tuple(stages), dict(zip(ROLES, rotors, strict=False))
+    return GearsSection(**_values(pairs[0], Pair)), tuple(stages), dict(zip(SECTIONS, rotors, strict=False))
 
 
 def _values(section: Section, model: type[Section]) -> dict[str, Any]:

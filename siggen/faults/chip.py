@@ -24,6 +24,7 @@ from siggen.keys.number import Number, Within, bounds, number_text
 from siggen.keys.scaling import Grows
 from siggen.keys.teeth import DAMAGED_TEETH, Teeth, most_teeth
 from siggen.keys.usual import Usual
+from siggen.names import EITHER, PINION, Side
 
 WHOLE = "whole"
 HEIGHT = Column(
@@ -50,7 +51,7 @@ class ChippedTeeth(Fault):
     needs_pairs: ClassVar[bool] = True
 
     kind: Literal["chip"] = "chip"
-    gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
+    gear: AnyGear = Field(default=PINION, description=DAMAGED_GEAR)
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
     height_mm: Annotated[Number | Literal["whole"], Within(above=0, words=(WHOLE,)), Usual(0.05, 30), Grows(MODULE)] = (
         Field(description="height lost from the tip down, along the radius; whole: the tooth is gone")
@@ -83,14 +84,14 @@ class ChippedTeeth(Fault):
 
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:
         """Yield more than a tooth, and neighbours of which none meets its mate: no corner would carry between them."""
-        deepest_m, most_m = _heights_m(self)[1], tooth_height_m(pair.member(self.gear))
+        deepest_m, most_m = _heights_m(self)[1], tooth_height_m(pair.member(self.side))
         if not isinstance(self.height_mm, str) and deepest_m > most_m:
             allowed = f"allowed: up to {1e3 * most_m:.6g}, the height of the tooth; or {WHOLE}"
             yield Problem("height_mm", number_text(self.height_mm), allowed)
         elif (
             self._may_take_the_face
-            and not keeps_contact(pair, self.gear, deepest_m)
-            and _has_neighbours(most_teeth(self.teeth), pair.member(self.gear).teeth)
+            and not keeps_contact(pair, self.side, deepest_m)
+            and _has_neighbours(most_teeth(self.teeth), pair.member(self.side).teeth)
         ):
             allowed = (
                 "allowed: teeth that are no neighbours, or heights that leave some of the flank that meets the mate"
@@ -101,8 +102,8 @@ class ChippedTeeth(Fault):
         """Return how far beside the path of contact corners carry where most is lost."""
         if not self._may_take_the_face:
             return CORNER_REACH_PITCHES
-        gears = ("pinion", "gear") if self.gear == "either" else (self.gear,)
-        return max(corner_reach_pitches(pair, which, _heights_m(self)[1]) for which in gears)
+        gears = Side if self.gear == EITHER else (self.side,)
+        return max(corner_reach_pitches(pair, side, _heights_m(self)[1]) for side in gears)
 
     @property
     def _may_take_the_face(self) -> bool:
@@ -113,11 +114,11 @@ class ChippedTeeth(Fault):
         """Return the chip of drawn numbers on a tooth."""
         share, whole = _shares(self)[0], isinstance(self.height_mm, str)
         if self._may_take_the_face:
-            return WholeChip(self.gear, tooth, _heights_m(self)[0])
-        gear, width_m = pair.member(self.gear), share * pair.face_width_m
+            return WholeChip(self.side, tooth, _heights_m(self)[0])
+        gear, width_m = pair.member(self.side), share * pair.face_width_m
         height_m = tooth_height_m(gear) if whole else _heights_m(self)[0]
         outline = lost_outline(gear, height_m, width_m)
-        return PartChip(self.gear, tooth, height_m, width_m, outline, whole)
+        return PartChip(self.side, tooth, height_m, width_m, outline, whole)
 
 
 def _shares(section: ChippedTeeth) -> tuple[float, float]:

@@ -30,6 +30,7 @@ from siggen.gears.damage.pit import FlankPit
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.section import Whole
 from siggen.keys.teeth import DAMAGED_TEETH, Teeth
+from siggen.names import PINION
 
 
 class ClusteredPits(PitSize, Fault):
@@ -39,7 +40,7 @@ class ClusteredPits(PitSize, Fault):
     nouns: ClassVar[str] = "pits"
 
     kind: Literal["clustered"] = "clustered"
-    gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
+    gear: AnyGear = Field(default=PINION, description=DAMAGED_GEAR)
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
     count: Annotated[Whole, Field(ge=1, le=10_000)] = Field(description="pits")
     centre_height_mm: Height = Field(default="pitch", description=MIDDLE_HEIGHT)
@@ -59,28 +60,28 @@ class ClusteredPits(PitSize, Fault):
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:
         """Yield what is wrong with pits in the middle and at either end of the flank."""
         middle_m, keys = pair.face_width_m / 2, ("centre_height_mm", "spread_profile_mm", "depth_mm")
-        for height_m in heights_m(pair, self.gear, self.centre_height_mm, self.height_reading):
-            yield from pit_place_problems(pair, PitPlace(self.gear, height_m, middle_m, self, *keys))
-        for height_m in flank_heights(pair.member(self.gear)):
+        for height_m in heights_m(pair, self.side, self.centre_height_mm, self.height_reading):
+            yield from pit_place_problems(pair, PitPlace(self.side, height_m, middle_m, self, *keys))
+        for height_m in flank_heights(pair.member(self.side)):
             remark = "a pit scattered to the end of the flank: "
-            yield from pit_place_problems(pair, PitPlace(self.gear, height_m, middle_m, self, *keys, remark))
+            yield from pit_place_problems(pair, PitPlace(self.side, height_m, middle_m, self, *keys, remark))
 
     def _pits(self, growth: Growth, tooth: int) -> Iterator[FlankPit]:
         present = sum(one.gear == self.gear and one.tooth == tooth for one in growth.before)
         for index, centre in enumerate(self._centres_m(growth, tooth, max(self.count - present, 0))):
             rng = growth.rng(f"{self.gear}.{tooth}.pit{index}")
-            yield drawn_pit(self, self.gear, growth.pair, tooth, centre, rng)
+            yield drawn_pit(self, self.side, growth.pair, tooth, centre, rng)
 
     def _centres_m(self, growth: Growth, tooth: int, count: int) -> list[tuple[float, float]]:
         """Return centres [m] scattered around a height and over the face."""
         if count == 0:
             return []
         uniform, pair = growth.place(self.gear, ClusteredPits), growth.pair
-        low, high = flank_heights(pair.member(self.gear))
+        low, high = flank_heights(pair.member(self.side))
         heights, faces = clustered_centres(
             growth.rng(f"{self.gear}.{tooth}.centres"),
             count,
-            drawn_height_m(self.centre_height_mm, self.height_reading, pair, self.gear, uniform("centre_height_mm")),
+            drawn_height_m(self.centre_height_mm, self.height_reading, pair, self.side, uniform("centre_height_mm")),
             length_m(self, "spread_profile_mm", uniform),
             0.0,
             pair.face_width_m,

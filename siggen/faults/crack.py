@@ -24,6 +24,7 @@ from siggen.keys.drawing import corners, draw
 from siggen.keys.number import Number, Within, bounds, constant, number_text
 from siggen.keys.teeth import DAMAGED_TEETH, Teeth, TeethValue
 from siggen.keys.usual import Usual
+from siggen.names import PINION
 
 LEAST_DEG, MOST_DEG = (round(degrees(angle)) for angle in ANGLE_RANGE_RAD)
 LONGEST_RUN = 1e3
@@ -50,7 +51,7 @@ class RootCracks(Fault):
     )
 
     kind: Literal["crack"] = "crack"
-    gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
+    gear: AnyGear = Field(default=PINION, description=DAMAGED_GEAR)
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
     depth_share: Annotated[Number, Within(above=0, most=DEEPEST_SHARE), Usual(0.02, 0.5)] = Field(
         description="largest depth along the crack over the chord of the root, whose ends have tangents at 30 degrees "
@@ -117,9 +118,9 @@ class RootCracks(Fault):
 
     def _on_tooth(self, pair: GearPair, tooth: int) -> RootCrack:
         """Return the crack of drawn numbers on a tooth."""
-        depth_m = constant(self.depth_share) * root_chord(pair.member(self.gear)).length_m
+        depth_m = constant(self.depth_share) * root_chord(pair.member(self.side)).length_m
         run_m = inf if self.face_share is None else constant(self.face_share) * pair.face_width_m
-        return RootCrack(self.gear, tooth, depth_m, radians(constant(self.angle_deg)), run_m)
+        return RootCrack(self.side, tooth, depth_m, radians(constant(self.angle_deg)), run_m)
 
 
 def _apart(teeth: TeethValue, others: TeethValue) -> bool:

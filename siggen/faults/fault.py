@@ -21,6 +21,7 @@ from siggen.keys.number import Number
 from siggen.keys.problems import BRANCHES
 from siggen.keys.section import Section
 from siggen.keys.teeth import TeethValue
+from siggen.names import Side
 
 HitTeeth: TypeAlias = Iterator[tuple[str, str, TeethValue]]
 """Keys that name teeth, the gear they belong to, and how many or which ones they name."""
@@ -119,6 +120,11 @@ class Fault(Section):
     def hit_gear(self) -> str:
         """The gear that it is on, as the file calls it; empty for none."""
         return str(getattr(self, "gear", ""))
+
+    @property
+    def side(self) -> Side:
+        """Which gear of its mesh that is, once it is drawn."""
+        return Side(self.hit_gear)
 
     @property
     def hit_gears(self) -> tuple[str, ...]:

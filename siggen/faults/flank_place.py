@@ -23,11 +23,11 @@ from siggen.keys.scaling import Grows
 from siggen.keys.section import Section
 from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
+from siggen.names import EITHER, SECTIONS, Side
 
-GearName: TypeAlias = Literal["pinion", "gear"]
 GEAR_TEXT = AllowedText(
     "one of pinion, gear, either; of a machine the name of a gear, or MESH.either; of planetary sets sun, planet, ring",
-    ("pinion", "gear", "either", "sun", "planet", "ring"),
+    (*SECTIONS, EITHER, "sun", "planet", "ring"),
 )
 AnyGear: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}(\.[a-z][a-z0-9_]{0,39})?$"), GEAR_TEXT]
 """`either`: drawn per gearbox, the same for all of its states."""
@@ -72,35 +72,35 @@ GO_ON = {"contact": ", or dynamics.mesh.law: pairs"}
 """What else to do about a problem, by its name."""
 
 
-def height_m_of(pair: GearPair, which: str, height_mm: float | str, reading: str) -> float:
+def height_m_of(pair: GearPair, side: Side, height_mm: float | str, reading: str) -> float:
     """Return the axial height above the base circle of a flank point given as in the configuration [m].
 
     Parameters
     ----------
     pair : GearPair
-    which : str
-        'pinion' or 'gear'.
+    side : Side
+        Of which it is.
     height_mm : float or str
         Height as measured [mm], or 'pitch' for the pitch point of the mesh (roll angle tan(alpha_w), derived).
     reading : str
         'axial', 'radial' or 'arc'.
     """
-    gear = pair.member(which)
+    gear = pair.member(side)
     if isinstance(height_mm, str):
         return float(gear.height_m(math.tan(pair.working_pressure_angle_rad)))
     return axial_height(gear, height_mm / 1e3, reading)
 
 
-def heights_m(pair: GearPair, gear: str, height_mm: Number | str, reading: str) -> list[float]:
+def heights_m(pair: GearPair, gear: Side, height_mm: Number | str, reading: str) -> list[float]:
     """Return the axial heights [m] at the bounds of a height as the configuration gives it."""
     if isinstance(height_mm, str):
         return [height_m_of(pair, gear, height_mm, reading)]
     return [height_m_of(pair, gear, value, reading) for value in dict.fromkeys(bounds(height_mm))]
 
 
-def drawn_height_m(height_mm: Number | str, reading: str, pair: GearPair, which: str, u: float) -> float:
+def drawn_height_m(height_mm: Number | str, reading: str, pair: GearPair, side: Side, u: float) -> float:
     """Return the axial height [m] of a height as the configuration states it, drawn by the uniform `u`."""
-    return height_m_of(pair, which, height_mm if isinstance(height_mm, str) else at(height_mm, u), reading)
+    return height_m_of(pair, side, height_mm if isinstance(height_mm, str) else at(height_mm, u), reading)
 
 
 def length_m(section: Section, key: str, uniform: Callable[[str], float]) -> float:

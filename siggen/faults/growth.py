@@ -16,6 +16,7 @@ from siggen.gears.damage.part import Parts
 from siggen.gears.damage.wear import LoadAtRest
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.teeth import TeethValue
+from siggen.names import Side
 from siggen.seeding import Stream, generator, named_generator, named_uniforms
 
 
@@ -101,6 +102,7 @@ class Growth:
         if not isinstance(section.teeth, int):
             raise TypeError(f"a drawn number of teeth was expected, received {section.teeth}")
         draws = generator(self.seed, Stream.DAMAGED_TEETH, self.specimen_id).random(2)
-        count = self.pair.member(section.gear).teeth
-        first = int(draws[("pinion", "gear").index(section.gear)] * count)
+        side = Side(section.gear)
+        count = self.pair.member(side).teeth
+        first = int(draws[side.number] * count)
         return tuple((first + i) % count for i in range(section.teeth))

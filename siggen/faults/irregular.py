@@ -58,6 +58,7 @@ from siggen.keys.number import Number, Within, at, bounds, constant, number_text
 from siggen.keys.scaling import Grows
 from siggen.keys.teeth import DAMAGED_TEETH, STAGES, Stages, Teeth, refuse_stages, stage_of
 from siggen.keys.usual import Usual
+from siggen.names import PINION, Side
 
 FLOOR_ROUGHNESS = 0.15
 """Rms of the depth from strip to strip across the face, over it (assumed)."""
@@ -83,7 +84,7 @@ class IrregularSpalls(Fault):
     nouns: ClassVar[str] = "spalls"
 
     kind: Literal["irregular"] = "irregular"
-    gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
+    gear: AnyGear = Field(default=PINION, description=DAMAGED_GEAR)
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
     stages: Stages = Field(default=1.0, description=STAGES)
     centre_height_mm: Middle = Field(
@@ -130,12 +131,12 @@ class IrregularSpalls(Fault):
 
     def widest(self, pair: GearPair) -> Damage:
         """Return a rectangle as long as the longest spall: on the safe side, since skewed edges leave land earlier."""
-        gear, across = pair.member(self.gear), MM * _longest_face_mm(self, pair.face_width_m / MM)
+        gear, across = pair.member(self.side), MM * _longest_face_mm(self, pair.face_width_m / MM)
         middle = 0.5 * pair.face_width_m if self.face_centre_mm is None else MM * bounds(self.face_centre_mm)[0]
         along = read_m(gear, _heights_m(pair, self)[0], self.height_reading)
         half = 0.5 * MM * bounds(self.profile_length_mm)[1]
         heights = axial_m(gear, along - half, self.height_reading), axial_m(gear, along + half, self.height_reading)
-        return (FlankSpall(self.gear, 0, rectangle(heights, (middle - 0.5 * across, middle + 0.5 * across)), PROBE_M),)
+        return (FlankSpall(self.side, 0, rectangle(heights, (middle - 0.5 * across, middle + 0.5 * across)), PROBE_M),)
 
     @property
     def own_edge_radius(self) -> tuple[str, Number]:
@@ -155,7 +156,7 @@ def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int, index: int) ->
     pair, name = growth.pair, f"irregular.{model.gear}.{tooth}"
     uniform = growth.place(model.gear, IrregularSpalls)
     size = _staged(draw(model, uniform, name), at(stage_of(model.stages, index), uniform(f"{name}.stages")))
-    gear, width = pair.member(model.gear), pair.face_width_m
+    gear, width = pair.member(Side(model.gear)), pair.face_width_m
     length, across = MM * constant(size.profile_length_mm), width * constant(size.face_share)
     middle = 0.5 * width if size.face_centre_mm is None else MM * constant(size.face_centre_mm)
     milder = _milder(growth, model.gear, tooth)
@@ -171,7 +172,7 @@ def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int, index: int) ->
     ]
     edges = [axial_heights_m(gear, arc, size.height_reading) for arc in arcs]
     return grown_spall(
-        model.gear,
+        Side(model.gear),
         tooth,
         face,
         (edges[0], edges[1]),
@@ -195,14 +196,16 @@ def _milder(growth: Growth, gear: str, tooth: int) -> IrregularSpall | None:
 
 def _edges(gear: str) -> tuple[str, str]:
     """Return which edge is the lower and which the upper one: contact climbs the driving pinion's flank."""
-    return ("leading", "trailing") if gear == "pinion" else ("trailing", "leading")
+    return ("leading", "trailing") if gear == Side.DRIVER else ("trailing", "leading")
 
 
 def _middle_height_m(pair: GearPair, size: IrregularSpalls) -> float:
     centre = size.centre_height_mm
     if centre == "below_pitch":
-        return initiation_height_m(pair, size.gear)
-    return height_m_of(pair, size.gear, centre if isinstance(centre, str) else constant(centre), size.height_reading)
+        return initiation_height_m(pair, Side(size.gear))
+    return height_m_of(
+        pair, Side(size.gear), centre if isinstance(centre, str) else constant(centre), size.height_reading
+    )
 
 
 def _waves_m(size: IrregularSpalls, growth: Growth, name: str, face_m: FloatArray) -> FloatArray:
@@ -268,7 +271,7 @@ def _edge_problems(pair: GearPair, size: IrregularSpalls, width_mm: float) -> It
 
 def _height_problems(pair: GearPair, size: IrregularSpalls, reach_m: float) -> Iterator[Problem]:
     """Yield a middle or an edge off the flank, else a floor deeper than the tooth allows."""
-    gear, reading = pair.member(size.gear), size.height_reading
+    gear, reading = pair.member(Side(size.gear)), size.height_reading
     foot, tip = flank_heights(gear)
     ends = [MM * value for value in (read_m(gear, foot, reading) / MM, read_m(gear, tip, reading) / MM)]
     for height in _heights_m(pair, size):
@@ -285,7 +288,7 @@ def _height_problems(pair: GearPair, size: IrregularSpalls, reach_m: float) -> I
             )
             return
         heights = axial_m(gear, along - reach_m, reading), axial_m(gear, along + reach_m, reading)
-        spall = FlankSpall(size.gear, 0, rectangle(heights, (0.0, pair.face_width_m)), _deepest_m(pair, size))
+        spall = FlankSpall(Side(size.gear), 0, rectangle(heights, (0.0, pair.face_width_m)), _deepest_m(pair, size))
         for problem in single_problems(pair, (spall,)):
             if problem.name == "depth_m":
                 yield _depth_problem(size, in_mm(problem.received), allowed_text(problem.allowed))

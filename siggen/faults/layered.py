@@ -33,6 +33,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import bounds
 from siggen.keys.section import Whole
 from siggen.keys.teeth import DAMAGED_TEETH, Teeth
+from siggen.names import PINION
 
 SPACING = "between pits of a row, and between rows"
 
@@ -44,7 +45,7 @@ class LayeredPits(PitSize, Fault):
     nouns: ClassVar[str] = "pits"
 
     kind: Literal["layered"] = "layered"
-    gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
+    gear: AnyGear = Field(default=PINION, description=DAMAGED_GEAR)
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
     layers: Annotated[Whole, Field(ge=1, le=1000)] = Field(description="rows of pits")
     pits_per_layer: Annotated[Whole, Field(ge=1, le=1000)] = Field(description="pits in a row, across the face")
@@ -71,13 +72,13 @@ class LayeredPits(PitSize, Fault):
 
     def widest(self, pair: GearPair) -> Damage:
         """Return one row."""
-        height_m = heights_m(pair, self.gear, self.first_height_mm, self.height_reading)[0]
-        return tuple(largest_pit(self.gear, 0, height_m, face_m, self) for face_m in self._row_faces_m(pair))
+        height_m = heights_m(pair, self.side, self.first_height_mm, self.height_reading)[0]
+        return tuple(largest_pit(self.side, 0, height_m, face_m, self) for face_m in self._row_faces_m(pair))
 
     def _pits(self, growth: Growth, tooth: int) -> Iterator[FlankPit]:
         for index, centre in enumerate(self._centres_m(growth, tooth)):
             rng = growth.rng(f"{self.gear}.{tooth}.pit{index}")
-            yield drawn_pit(self, self.gear, growth.pair, tooth, centre, rng)
+            yield drawn_pit(self, self.side, growth.pair, tooth, centre, rng)
 
     def _milder(self, growth: Growth, tooth: int) -> list[LayeredPits]:
         """Return the layers that milder states of this growth have on a tooth, the nearest state first."""
@@ -88,7 +89,7 @@ class LayeredPits(PitSize, Fault):
         """Return the centres [m] of free places of the layers; columns of a layer count from its middle outwards."""
         milder = self._milder(growth, tooth)
         uniform, pair = growth.place(self.gear, LayeredPits), growth.pair
-        first = drawn_height_m(self.first_height_mm, self.height_reading, pair, self.gear, uniform("first_height_mm"))
+        first = drawn_height_m(self.first_height_mm, self.height_reading, pair, self.side, uniform("first_height_mm"))
         middle = 0.5 * pair.face_width_m if self.face_centre_mm is None else length_m(self, "face_centre_mm", uniform)
         # An even number of columns is centred between two of them; what grows keeps the lattice that it began on.
         between = (milder[-1] if milder else self).pits_per_layer % 2 == 0
@@ -114,11 +115,11 @@ class LayeredPits(PitSize, Fault):
         reach_m = (self.pits_per_layer - 1) / 2 * bounds(self.spacing_face_mm)[1] / 1e3
         climb_m = (self.layers - 1) * bounds(self.spacing_profile_mm)[1] / 1e3
         face_key = "spacing_face_mm" if self.pits_per_layer > 1 else "face_centre_mm"
-        for first_m in heights_m(pair, self.gear, self.first_height_mm, self.height_reading):
+        for first_m in heights_m(pair, self.side, self.first_height_mm, self.height_reading):
             for row, height_m in ((1, first_m), (self.layers, first_m + climb_m)):
                 for face_m in (centres_m[0] - reach_m, centres_m[-1] + reach_m):
                     remark = f"outermost pit of row {row} of {self.layers}: "
-                    yield PitPlace(self.gear, height_m, face_m, self, "first_height_mm", face_key, "depth_mm", remark)
+                    yield PitPlace(self.side, height_m, face_m, self, "first_height_mm", face_key, "depth_mm", remark)
 
     def _row_faces_m(self, pair: GearPair) -> list[float]:
         centre_m = pair.face_width_m / 2 if self.face_centre_mm is None else bounds(self.face_centre_mm)[0] / 1e3

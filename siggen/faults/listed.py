@@ -33,12 +33,13 @@ from siggen.keys.number import Number, Within, at, bounds
 from siggen.keys.problems import refusal
 from siggen.keys.scaling import Grows
 from siggen.keys.section import Whole
+from siggen.names import PINION, Side
 
 
 class ListedPit(PitSize):
     """One pit at a given place."""
 
-    gear: AnyGear = Field(default="pinion", description="damaged gear")
+    gear: AnyGear = Field(default=PINION, description="damaged gear")
     tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
     height_mm: Height = Field(default="pitch", description=MIDDLE_HEIGHT)
     face_mm: Annotated[Number, Within(least=0), Grows(FACE_WIDTH)] = Field(description=FACE_CENTRE)
@@ -116,9 +117,9 @@ class ListedPits(Fault):
         """Yield what is wrong with each of them."""
         for index, pit in enumerate(self.pits):
             keys = (f"pits.{index}.height_mm", f"pits.{index}.face_mm", f"pits.{index}.depth_mm")
-            for height_m in heights_m(pair, pit.gear, pit.height_mm, self.height_reading):
+            for height_m in heights_m(pair, Side(pit.gear), pit.height_mm, self.height_reading):
                 for face_mm in bounds(pit.face_mm):
-                    yield from pit_place_problems(pair, PitPlace(pit.gear, height_m, face_mm / 1e3, pit, *keys))
+                    yield from pit_place_problems(pair, PitPlace(Side(pit.gear), height_m, face_mm / 1e3, pit, *keys))
         for index, outline in enumerate(self.outlines):
             yield from outline.problems(pair, self.height_reading, f"outlines.{index}.")
 
@@ -127,16 +128,16 @@ class ListedPits(Fault):
         # Teeth that there are not are refused by name elsewhere.
         pits = tuple(
             largest_pit(
-                pit.gear,
+                Side(pit.gear),
                 pit.tooth,
-                heights_m(pair, pit.gear, pit.height_mm, self.height_reading)[0],
+                heights_m(pair, Side(pit.gear), pit.height_mm, self.height_reading)[0],
                 bounds(pit.face_mm)[0] / 1e3,
                 pit,
             )
             for pit in self.pits
-            if pit.tooth < pair.member(pit.gear).teeth
+            if pit.tooth < pair.member(Side(pit.gear)).teeth
         )
-        outlined = (one for one in self.outlines if one.tooth < pair.member(one.gear).teeth)
+        outlined = (one for one in self.outlines if one.tooth < pair.member(Side(one.gear)).teeth)
         return (
             *pits,
             *(replace(one.spall(pair, self.height_reading), strip_depths_m=one.probe_depths_m) for one in outlined),
@@ -145,5 +146,7 @@ class ListedPits(Fault):
     def _pits(self, growth: Growth) -> Iterator[FlankPit]:
         for index, pit in enumerate(self.pits):
             rng = growth.rng(f"list.pit{index}")
-            height = drawn_height_m(pit.height_mm, self.height_reading, growth.pair, pit.gear, rng.random())
-            yield drawn_pit(pit, pit.gear, growth.pair, pit.tooth, (height, MM * at(pit.face_mm, rng.random())), rng)
+            height = drawn_height_m(pit.height_mm, self.height_reading, growth.pair, Side(pit.gear), rng.random())
+            yield drawn_pit(
+                pit, Side(pit.gear), growth.pair, pit.tooth, (height, MM * at(pit.face_mm, rng.random())), rng
+            )

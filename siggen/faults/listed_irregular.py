@@ -17,6 +17,7 @@ from siggen.gears.damage.irregular import IrregularSpall
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.section import Real, Section, Whole
 from siggen.keys.wording import AllowedText
+from siggen.names import PINION, Side
 
 EdgePoint = Annotated[
     tuple[Real, Real, Real],
@@ -27,7 +28,7 @@ EdgePoint = Annotated[
 class ListedIrregular(Section):
     """One irregular spall with a flat floor at a given place."""
 
-    gear: AnyGear = Field(default="pinion", description="damaged gear")
+    gear: AnyGear = Field(default=PINION, description="damaged gear")
     tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
     edges_mm: Annotated[tuple[EdgePoint, ...], Field(min_length=2)] = Field(
         description="place across the face, heights of the lower and the upper edge above the base circle; ascending "
@@ -39,11 +40,11 @@ class ListedIrregular(Section):
     def spall(self, pair: GearPair, reading: str) -> IrregularSpall:
         """Return the spall on the flank of a drawn gear, its heights as a reading measures them."""
         face, low, high = MM * np.array(self.edges_mm).T
-        gear = pair.member(self.gear)
+        gear = pair.member(Side(self.gear))
         edges = (axial_heights_m(gear, edge, reading) for edge in (low, high))
         stations = tuple(zip(face.tolist(), *(edge.tolist() for edge in edges), strict=True))
         depths = (MM * self.depth_mm,) * (len(stations) - 1)
-        return IrregularSpall(self.gear, self.tooth, stations, depths, MM * self.edge_radius_mm)
+        return IrregularSpall(Side(self.gear), self.tooth, stations, depths, MM * self.edge_radius_mm)
 
     @property
     def probe_depths_m(self) -> tuple[float, ...]:

@@ -27,6 +27,7 @@ from siggen.gears.damage.pit import FlankPit
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import at, bounds
 from siggen.keys.section import Section
+from siggen.names import Side
 
 SEMI_AXES = "half the length across the face, and along the profile"
 
@@ -44,7 +45,7 @@ class PitSize(Section):
 class PitPlace:
     """A place where pits of a state may come to lie, and the keys of the configuration that put them there."""
 
-    gear: str
+    gear: Side
     height_m: float
     face_m: float
     size: PitSize
@@ -55,7 +56,7 @@ class PitPlace:
 
 
 def drawn_pit(
-    size: PitSize, gear: str, pair: GearPair, tooth: int, centre_m: tuple[float, float], rng: np.random.Generator
+    size: PitSize, gear: Side, pair: GearPair, tooth: int, centre_m: tuple[float, float], rng: np.random.Generator
 ) -> FlankPit:
     """Return a pit with its own sizes at a height and across the face [m].
 
@@ -81,7 +82,7 @@ def pit_place_problems(pair: GearPair, place: PitPlace) -> list[Problem]:
     """Return what is wrong with one place: its height and its place on the face first, then the depth there."""
     middle_m = pair.face_width_m / 2
     at_height = found_problems(pair, (_probe(place, place.height_m, middle_m),), place.height_key, place.remark)
-    pitch_m = height_m_of(pair, place.gear, "pitch", "axial")
+    pitch_m = height_m_of(pair, Side(place.gear), "pitch", "axial")
     at_face = found_problems(pair, (_probe(place, pitch_m, place.face_m),), place.face_key, place.remark)
     if at_height or at_face:
         return [*at_height, *at_face]
@@ -94,10 +95,10 @@ def pit_place_problems(pair: GearPair, place: PitPlace) -> list[Problem]:
 
 
 def _probe(place: PitPlace, height_m: float, face_m: float) -> FlankPit:
-    return FlankPit(place.gear, 0, height_m, face_m, PROBE_M, PROBE_M, PROBE_M, place.size.floor)
+    return FlankPit(Side(place.gear), 0, height_m, face_m, PROBE_M, PROBE_M, PROBE_M, place.size.floor)
 
 
-def largest_pit(gear: str, tooth: int, height_m: float, face_m: float, size: PitSize) -> FlankPit:
+def largest_pit(gear: Side, tooth: int, height_m: float, face_m: float, size: PitSize) -> FlankPit:
     """Return a pit with its sizes at their upper bounds, without depth to speak of."""
     across_m, along_m = bounds(size.semi_axis_face_mm)[1] / 1e3, bounds(size.semi_axis_profile_mm)[1] / 1e3
     return FlankPit(gear, tooth, height_m, face_m, across_m, along_m, PROBE_M, size.floor)

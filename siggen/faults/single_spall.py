@@ -37,12 +37,13 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import corners, draw
 from siggen.keys.number import LOW, bounds, constant
 from siggen.keys.section import Section
+from siggen.names import PINION, Side
 
 
 class SpallSize(Section):
     """Outline, place and depth of one spall."""
 
-    gear: AnyGear = Field(default="pinion", description=DAMAGED_GEAR)
+    gear: AnyGear = Field(default=PINION, description=DAMAGED_GEAR)
     centre_height_mm: Height = Field(default="pitch", description=MIDDLE_HEIGHT)
     face_centre_mm: PlaceOnFace = Field(default=None, description=FACE_CENTRE)
     face_length_mm: LengthAcross = Field(description="length across the face")
@@ -81,13 +82,13 @@ def spall_on_tooth(pair: GearPair, size: SpallSize, reading: str, tooth: int) ->
     TypeError
         If a number is still a distribution.
     """
-    return FlankSpall(size.gear, tooth, _outline(pair, size, reading), MM * constant(size.depth_mm), size.floor)
+    return FlankSpall(Side(size.gear), tooth, _outline(pair, size, reading), MM * constant(size.depth_mm), size.floor)
 
 
 def _outline(pair: GearPair, size: SpallSize, reading: str) -> Outline:
-    gear = pair.member(size.gear)
+    gear = pair.member(Side(size.gear))
     centre = size.centre_height_mm
-    middle = height_m_of(pair, size.gear, centre if isinstance(centre, str) else constant(centre), reading)
+    middle = height_m_of(pair, Side(size.gear), centre if isinstance(centre, str) else constant(centre), reading)
     along = read_m(gear, middle, reading)
     half = 0.5 * MM * constant(size.profile_length_mm)
     heights = axial_m(gear, along - half, reading), axial_m(gear, along + half, reading)

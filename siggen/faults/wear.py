@@ -21,6 +21,7 @@ from siggen.keys.drawing import draw
 from siggen.keys.number import Number, Within, bounds, constant, number_text
 from siggen.keys.scaling import Grows
 from siggen.keys.usual import Usual
+from siggen.names import Side
 
 DEEPEST_SHARE = 0.1
 """Of the module: beyond, a tooth is no involute with some wear any more (severe wear: 0.02 to 0.05, from memory)."""
@@ -73,7 +74,9 @@ class FlankWear(Fault):
             COEFFICIENT_M2_PER_N,
             depth_m=1e-6 * constant(own.depth_um),
         )
-        return WornFlanks("pinion", tuple(worn.pinion_m.tolist())), WornFlanks("gear", tuple(worn.gear_m.tolist()))
+        return WornFlanks(Side.DRIVER, tuple(worn.pinion_m.tolist())), WornFlanks(
+            Side.DRIVEN, tuple(worn.gear_m.tolist())
+        )
 
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:
         """Yield wear that may go deeper than a share of the module."""

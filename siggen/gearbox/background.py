@@ -25,11 +25,11 @@ from siggen.gearbox.background_numbers import (
 from siggen.keys.drawing import SomeSection, draw, in_si
 from siggen.keys.number import constant
 from siggen.keys.section import Section
-from siggen.names import ROLES
+from siggen.names import Side
 from siggen.seeding import Stream, named_uniforms
 
 T = TypeVar("T")
-MACHINES = {"motor": "pinion", "load": "gear"}
+MACHINES = {"motor": Side.DRIVER, "load": Side.DRIVEN}
 """What stands beside the gearbox, and the shaft that leads there: of the first gear or sun, of its mate or carrier."""
 
 
@@ -123,9 +123,9 @@ class DrawnBackground:
 
     base: Base | None
     rubbing: RubbingLevels | None
-    bearings: Mapping[str, BearingLevels]
+    bearings: Mapping[Side, BearingLevels]
     machines: MachineLevels | None
-    shafts: Mapping[str, ShaftLevels]
+    shafts: Mapping[Side, ShaftLevels]
     foreign: Mapping[str, ForeignLevels]
     angles_rad: Mapping[str, float]
 
@@ -153,11 +153,11 @@ def drawn_background(config: Config, specimen_id: int) -> DrawnBackground | None
         rubbing=levels(RubbingLevels, RubbingNumbers, rubbing, "rubbing", bursts=bursts),
         bearings={
             role: BearingLevels(**in_si(drawn(BearingNumbers, bearings, f"bearings.{role}", **bands)))
-            for role in ROLES
+            for role in Side
             if bearings is not None
         },
         machines=levels(MachineLevels, MachineNumbers, section.machines, "machines"),
-        shafts={r: _shaft(drawn(ShaftNumbers, shafts, f"shafts.{r}")) for r in ROLES if shafts is not None},
+        shafts={r: _shaft(drawn(ShaftNumbers, shafts, f"shafts.{r}")) for r in Side if shafts is not None},
         foreign={
             name: ForeignLevels(**in_si(drawn(ForeignNumbers, mesh, name)))
             for name, mesh in meshes.items()

@@ -18,7 +18,7 @@ from siggen.faults.fault import Fault
 from siggen.gearbox.lived import Lived, lived, lived_states
 from siggen.keys.distributions import Choice
 from siggen.keys.teeth import drawn_teeth, most_teeth
-from siggen.names import EITHER, ROLES, Names
+from siggen.names import EITHER, Names, Side
 from siggen.rig.carried_over import carried_over
 from siggen.seeding import Stream, generator, named_uniforms
 
@@ -109,7 +109,7 @@ def possible_damages(damage: Fault) -> Iterator[Fault]:
     if gear is None:
         yield damage
         return
-    for hit in ROLES if gear == EITHER else (gear,):
+    for hit in Side if gear == EITHER else (gear,):
         yield damage.model_copy(update={"gear": hit, "teeth": most_teeth(getattr(damage, "teeth"))})  # noqa: B009
 
 
@@ -118,7 +118,7 @@ Hit = Callable[[Any], dict[str, object]]
 
 
 def _drawn_hit(uniform: Callable[[str], float], names: Names) -> Hit:
-    role, u = ROLES[int(2.0 * uniform("gear"))], uniform("teeth")
+    role, u = tuple(Side)[int(2.0 * uniform("gear"))], uniform("teeth")
     drawn = {word: names.mesh(mesh).gear(role).word for word, (mesh, of) in names.flanks.items() if of == EITHER}
     return lambda damage: {"gear": drawn.get(damage.gear, damage.gear), "teeth": drawn_teeth(damage.teeth, u)}
 

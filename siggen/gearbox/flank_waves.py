@@ -11,7 +11,7 @@ from siggen.gears.errors.flank_waves import ORDERS
 from siggen.gears.errors.flank_waves import FlankWaves as DrawnWaves
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.distributions import LogUniform, Uniform
-from siggen.names import ROLES
+from siggen.names import Side
 from siggen.seeding import Stream, named_generator
 
 CLAMPING = (2, 3, 4)
@@ -45,7 +45,7 @@ class SpecimenWaves:
 
     pinion: DrawnWaves
     gear: DrawnWaves
-    ghosts: dict[str, int]
+    ghosts: dict[Side, int]
 
 
 def drawn_waves(seed: int, owner: tuple[int, int], pair: GearPair) -> SpecimenWaves:
@@ -54,16 +54,16 @@ def drawn_waves(seed: int, owner: tuple[int, int], pair: GearPair) -> SpecimenWa
     def draws(name: str) -> np.random.Generator:
         return named_generator(seed, Stream.MANUFACTURE, *owner, name=f"manufacture.flank_waves.{name}")
 
-    pinion, gear = (_drawn(pair.member(which).teeth, which, draws) for which in ROLES)
-    counts = {which: drawn.waves.size - len(CLAMPING) for which, drawn in zip(ROLES, (pinion, gear), strict=True)}
+    pinion, gear = (_drawn(pair.member(side).teeth, side, draws) for side in Side)
+    counts = {side: drawn.waves.size - len(CLAMPING) for side, drawn in zip(Side, (pinion, gear), strict=True)}
     return SpecimenWaves(pinion, gear, counts)
 
 
-def _drawn(teeth: int, which: str, draws: Draws) -> DrawnWaves:
+def _drawn(teeth: int, side: Side, draws: Draws) -> DrawnWaves:
     def uniform(name: str) -> float:
-        return float(draws(f"{which}.{name}").random())
+        return float(draws(f"{side}.{name}").random())
 
-    count = min(int(draws(f"{which}.ghosts").poisson(GHOSTS)), MOST_GHOSTS)
+    count = min(int(draws(f"{side}.ghosts").poisson(GHOSTS)), MOST_GHOSTS)
     ghosts = [f"ghost.{k}" for k in range(count)]
     orders = [round(teeth * ORDER_OVER_TEETH.at(uniform(f"{ghost}.order"))) for ghost in ghosts]
     sizes = [
@@ -80,6 +80,6 @@ def _drawn(teeth: int, which: str, draws: Draws) -> DrawnWaves:
         waves=np.array([*orders, *CLAMPING], dtype=float),
         amplitude_m=1e-6 * np.array([*sizes, *clamping]),
         phase_rad=2.0 * np.pi * np.array([uniform(f"{name}.phase") for name in (*ghosts, *map(str, CLAMPING))]),
-        common_m=1e-6 * common * np.exp(turn * draws(f"{which}.common.phases").random(ORDERS.size)),
-        own_m=1e-6 * own * np.exp(turn * draws(f"{which}.own.phases").random((teeth, ORDERS.size))),
+        common_m=1e-6 * common * np.exp(turn * draws(f"{side}.common.phases").random(ORDERS.size)),
+        own_m=1e-6 * own * np.exp(turn * draws(f"{side}.own.phases").random((teeth, ORDERS.size))),
     )

@@ -23,7 +23,7 @@ from siggen.gearbox.mode_table import ModeTable, mode_table
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import draw
 from siggen.keys.number import Number, at, constant
-from siggen.names import ROLES
+from siggen.names import Side
 from siggen.seeding import Stream, named_generator, named_uniforms
 from siggen.sensors.sensor import SensorBase
 
@@ -119,7 +119,7 @@ def drawn_housing(
         foot_damping_ratio=constant(numbers.feet.damping_ratio),
         loose_share=constant(numbers.loose_foot_share),
         front_share={
-            role: 0.5 if shafts is None else 1.0 - constant(getattr(shafts, role).gear_position) for role in ROLES
+            role: 0.5 if shafts is None else 1.0 - constant(getattr(shafts, role).gear_position) for role in Side
         },
         drive_share=(_of_wall(path("housing.auxiliary_drive.0")), _of_wall(path("housing.auxiliary_drive.1"))),
         mounts={sensor.name: _mount(sensor, sensor.plate, path) for sensor in sensors if sensor.plate is not None},

@@ -19,7 +19,7 @@ from siggen.life.clock import Clock, LoadBlock
 from siggen.life.debris import counted_mg
 from siggen.life.flank import flanks
 from siggen.life.law import LifeCourse, Named, Wearing
-from siggen.names import Names
+from siggen.names import Names, Side
 from siggen.seeding import Stream, named_generator, named_uniforms
 
 Event = Literal["failed", "suspended"]
@@ -76,7 +76,7 @@ def lived_states(life: Life, found: Lived, names: Names) -> tuple[StateSection, 
 def _state(life: Life, found: Lived, number: int, names: Names) -> StateSection:
     time = found.clock.time(found.ages_h[number])
     pits = found.course.damage(time)
-    damage = None if pits is None else pits.with_gears(lambda role: names.first.gear(role).word)
+    damage = None if pits is None else pits.with_gears(lambda side: names.first.gear(Side(side)).word)
     severity = SEVERITIES[PHASES.index(found.phase(time))] if damage is not None else "healthy"
     fault = HEALTHY if damage is None else damage.words[0]
     return StateSection(name=life.name_of(number), fault=fault, severity=severity, damage=damage)

@@ -24,6 +24,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import InternalPair, ring_begins_pitches
 from siggen.gears.geometry.planetary import PlanetarySet
 from siggen.keys.number import Number, constant
+from siggen.names import Side
 
 DAMPING_RATIO = 0.03
 """Of each body on its support alone (assumed)."""
@@ -98,8 +99,8 @@ def planetary_teeth(
     first = drawing(pair, rotors, seed, "", 1.0)
     suns, rings = [first], [on_one_body(drawing(ring, rotors, of_ring, RING, 1.0), first, later[0])]
     for i in range(1, len(later)):
-        suns.append(sharing(drawing(pair, rotors, mesh_seed(seed, f"planet_{i}"), "", 1.0), first, "pinion"))
-        own = sharing(drawing(ring, rotors, mesh_seed(of_ring, f"planet_{i}"), RING, 1.0), rings[0], "gear")
+        suns.append(sharing(drawing(pair, rotors, mesh_seed(seed, f"planet_{i}"), "", 1.0), first, Side.DRIVER))
+        own = sharing(drawing(ring, rotors, mesh_seed(of_ring, f"planet_{i}"), RING, 1.0), rings[0], Side.DRIVEN)
         rings.append(on_one_body(own, suns[i], later[i]))
     return *suns, *rings
 

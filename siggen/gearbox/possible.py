@@ -30,7 +30,7 @@ from siggen.gears.stiffness.stiffness_notes import stiffness_notes
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.keys.drawing import Uniforms, corners, draw
 from siggen.keys.number import HIGH, MIDDLE, at, bounds
-from siggen.names import MeshName
+from siggen.names import MeshName, Side
 
 HARMLESS = {"operating_points": (), "sensors": (), "duration_s": 86_400.0}
 """In place of sections that are refused for themselves, where their defaults would not do."""
@@ -175,20 +175,20 @@ class PossibleGearbox:
         """Return how teeth push and rub."""
         return tooth_law(draw(self.config.dynamics, uniform, "dynamics"))
 
-    def ball(self, role: str, uniform: Uniforms) -> BallBearing | None:
+    def ball(self, side: Side, uniform: Uniforms) -> BallBearing | None:
         """Return each bearing of a shaft whose stiffness follows the load; None where it does not."""
-        section: BallGeometry | None = getattr(self.config.dynamics, role).bearing
-        return None if section is None else draw(section, uniform, f"dynamics.{role}.bearing").bearing()
+        section: BallGeometry | None = getattr(self.config.dynamics, side).bearing
+        return None if section is None else draw(section, uniform, f"dynamics.{side}.bearing").bearing()
 
-    def rotor(self, role: str, pair: GearPair, uniform: Uniforms) -> Rotor:
+    def rotor(self, side: Side, pair: GearPair, uniform: Uniforms) -> Rotor:
         """Return a gear of the first mesh on its bearings."""
-        section = draw(getattr(self.config.dynamics, role), uniform, f"dynamics.{role}")
-        return rotor_numbers(section, pair.member(role), pair.face_width_m)
+        section = draw(getattr(self.config.dynamics, side), uniform, f"dynamics.{side}")
+        return rotor_numbers(section, pair.member(side), pair.face_width_m)
 
-    def shaft(self, role: str, pair: GearPair) -> Callable[[Uniforms], Shaft]:
+    def shaft(self, side: Side, pair: GearPair) -> Callable[[Uniforms], Shaft]:
         """Return what draws a shaft that bends, with a typical gear."""
-        rotor, section = self.rotor(role, pair, lambda _: MIDDLE), getattr(self.config.dynamics.shafts, role)
-        return lambda uniform: shaft_numbers(draw(section, uniform, f"dynamics.shafts.{role}"), rotor, pair)
+        rotor, section = self.rotor(side, pair, lambda _: MIDDLE), getattr(self.config.dynamics.shafts, side)
+        return lambda uniform: shaft_numbers(draw(section, uniform, f"dynamics.shafts.{side}"), rotor, pair)
 
     def plates(self, uniform: Uniforms) -> PlateNumbers | None:
         """Return the numbers of a box of plates; None where something else carries the bearings."""
@@ -207,7 +207,7 @@ class PossibleGearbox:
         config, load = self.config, at(self.config.dynamics.load_inertia_kg_m2, HIGH)
         if config.planetary is not None:
             return load / (1.0 + config.planetary.ring_teeth / pair.pinion.teeth) ** 2
-        gears = [self.rotor("gear", pair, lambda _: HIGH)]
+        gears = [self.rotor(Side.DRIVEN, pair, lambda _: HIGH)]
         for stage, mesh in zip(config.stages, self.meshes[1:], strict=True):
             section = draw(stage.gear, lambda _: HIGH, "")
             gears += [rotor_numbers(section, one.gear, one.face_width_m) for one in mesh.pairs[:1]]

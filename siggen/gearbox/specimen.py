@@ -23,7 +23,7 @@ from siggen.gearbox.teeth import Teeth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import InternalPair
 from siggen.gears.geometry.planetary import PlanetarySet
-from siggen.names import Names
+from siggen.names import Names, Side
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +88,7 @@ class PairTrain:
     first: GearStage
     behind: tuple[NextStage, ...] = ()
     bending: tuple[Shaft, Shaft] | None = None
-    balls: tuple[tuple[str, BallBearing], ...] = ()
+    balls: tuple[tuple[Side, BallBearing], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

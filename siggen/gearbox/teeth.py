@@ -18,6 +18,7 @@ from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.keys.number import bounds
+from siggen.names import Side
 
 Made = TypeVar("Made", SpecimenErrors, SpecimenWaves)
 Errors: TypeAlias = Callable[[int], SpecimenErrors | None]
@@ -109,21 +110,21 @@ def mesh_seed(seed: int, name: str) -> int:
     return int.from_bytes(hashlib.sha256(f"{seed} stages.{name}".encode()).digest()[:8]) >> 1
 
 
-def sharing(own: Teeth, other: Teeth, which: str) -> Teeth:
+def sharing(own: Teeth, other: Teeth, side: Side) -> Teeth:
     """Return the teeth of a pair whose pinion or gear is that of another pair, with its damage there alone."""
     return replace(
         own,
-        errors=cache(partial(_put_into, own.errors, other.errors, which)),
-        waves=cache(partial(_put_into, own.waves, other.waves, which)),
-        damage=lambda state, loads: tuple(one for one in other.damage(state, loads) if one.gear == which),
+        errors=cache(partial(_put_into, own.errors, other.errors, side)),
+        waves=cache(partial(_put_into, own.waves, other.waves, side)),
+        damage=lambda state, loads: tuple(one for one in other.damage(state, loads) if one.gear == side),
     )
 
 
 def _put_into(
-    own: Callable[[int], Made | None], other: Callable[[int], Made | None], which: str, drawn_for: int
+    own: Callable[[int], Made | None], other: Callable[[int], Made | None], side: Side, drawn_for: int
 ) -> Made | None:
     mine, theirs = own(drawn_for), other(drawn_for)
-    return mine if mine is None or theirs is None else replace(mine, **{which: getattr(theirs, which)})
+    return mine if mine is None or theirs is None else replace(mine, **{side: getattr(theirs, side)})
 
 
 def on_one_body(own: Teeth, other: Teeth, later_rad: float) -> Teeth:

@@ -20,7 +20,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
 from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, at
-from siggen.names import ROLES
+from siggen.names import Side
 from siggen.seeding import Stream, named_generator, named_uniforms
 
 RUNOUT_SHARE = Uniform(low=0.3, high=0.8)
@@ -114,10 +114,10 @@ def drawn_errors(
 
     supports = named_uniforms(seed, Stream.SUPPORTS, owner[0])
     seats = [
-        1e-6 * at(number, supports(f"dynamics.{which}.eccentricity_um"))
-        for which, number in zip(ROLES, eccentricities_um, strict=True)
+        1e-6 * at(number, supports(f"dynamics.{side}.eccentricity_um"))
+        for side, number in zip(Side, eccentricities_um, strict=True)
     ]
-    pinion, gear = (_made(section, pair, which, seat, draws) for which, seat in zip(ROLES, seats, strict=True))
+    pinion, gear = (_made(section, pair, side, seat, draws) for side, seat in zip(Side, seats, strict=True))
     shafts_m = _shafts_m(section, (pinion, gear), draws)
     return SpecimenErrors(pinion, gear, shafts_m)
 
@@ -134,25 +134,25 @@ def lead_of(errors: SpecimenErrors | None) -> Callable[[int], FloatArray] | None
     return None if errors is None or errors.even else errors.lead_m
 
 
-def _made(section: Manufacture, pair: GearPair, which: str, seat_m: float, draws: Draws) -> MadeGear:
+def _made(section: Manufacture, pair: GearPair, side: Side, seat_m: float, draws: Draws) -> MadeGear:
     def uniform(name: str) -> float:
-        return float(draws(f"{which}.{name}").random())
+        return float(draws(f"{side}.{name}").random())
 
-    number = section.accuracy_class if which == "pinion" else section.gear_class
+    number = section.accuracy_class if side == Side.DRIVER else section.gear_class
     accuracy_class, share = round(at(number, uniform("accuracy_class"))), at(section.tolerance_share, uniform("share"))
-    tolerances = flank_tolerances(pair.member(which), pair.face_width_m, accuracy_class, pair.helix_rad)
-    of_teeth = draws(f"{which}.waves").random(pair.member(which).teeth)
+    tolerances = flank_tolerances(pair.member(side), pair.face_width_m, accuracy_class, pair.helix_rad)
+    of_teeth = draws(f"{side}.waves").random(pair.member(side).teeth)
     waves = np.array([PROFILE_WAVES.at(float(u)) for u in of_teeth])
-    shapes = error_shapes(waves, lambda name: draws(f"{which}.{name}"))
-    errors = gear_errors(pair, which, shapes, tolerances.times(share), RUNOUT_SHARE.at(uniform("runout_share")))
+    shapes = error_shapes(waves, lambda name: draws(f"{side}.{name}"))
+    errors = gear_errors(pair, side, shapes, tolerances.times(share), RUNOUT_SHARE.at(uniform("runout_share")))
     errors = off_axis(errors, seat_m, 2.0 * pi * uniform("eccentricity_angle"))
-    helix = _helix(section, which, tolerances.times(share), uniform)
-    return MadeGear(accuracy_class, share, tolerances, errors, deviations(pair, which, errors), helix)
+    helix = _helix(section, side, tolerances.times(share), uniform)
+    return MadeGear(accuracy_class, share, tolerances, errors, deviations(pair, side, errors), helix)
 
 
-def _helix(section: Manufacture, which: str, limits: FlankTolerances, uniform: Callable[[str], float]) -> Helix:
+def _helix(section: Manufacture, side: Side, limits: FlankTolerances, uniform: Callable[[str], float]) -> Helix:
     """Return a helix; its slope has the draw that `lead_misalignment_um: iso_1328` takes it from."""
-    number = section.crowning_um if which == "pinion" else section.crowning_of_gear
+    number = section.crowning_um if side == Side.DRIVER else section.crowning_of_gear
     crowning = 1e-6 * at(number, uniform("crowning_um"))
     if not section.has_helix:
         return straight_helix(crowning)
@@ -163,7 +163,7 @@ def _helix(section: Manufacture, which: str, limits: FlankTolerances, uniform: C
 def _shafts_m(section: Manufacture, gears: tuple[MadeGear, MadeGear], draws: Draws) -> float:
     """Return the drawn misalignment with its sign, as likely the one as the other."""
     if section.lead_misalignment_um == "iso_1328":
-        ends = (2.0 * float(draws(f"{which}.helix").random()) - 1.0 for which in ("pinion", "gear"))
+        ends = (2.0 * float(draws(f"{side}.helix").random()) - 1.0 for side in Side)
         slopes = (made.tolerance_share * made.tolerances.helix_slope_m for made in gears)
         return sum(end * slope for end, slope in zip(ends, slopes, strict=True))
     size = 1e-6 * at(section.lead_misalignment_um, float(draws("lead_misalignment_um").random()))  # type: ignore[arg-type]

@@ -13,6 +13,7 @@ from siggen.gearbox.specimen import ToothMesh
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.keys.number import constant
+from siggen.names import Side
 
 
 def gear_stage(dynamics: Dynamics, pair: GearPair) -> GearStage:
@@ -51,10 +52,10 @@ def coupling_numbers(section: CouplingSection) -> Coupling:
     return Coupling(constant(section.stiffness_nm_per_rad), constant(section.damping_nm_s_per_rad))
 
 
-def ball_bearings(dynamics: Dynamics) -> tuple[tuple[str, BallBearing], ...]:
+def ball_bearings(dynamics: Dynamics) -> tuple[tuple[Side, BallBearing], ...]:
     """Return each of both bearings of the shafts, pinion and gear, whose stiffness follows the load."""
-    sections = {"pinion": dynamics.pinion.bearing, "gear": dynamics.gear.bearing}
-    return tuple((which, section.bearing()) for which, section in sections.items() if section is not None)
+    sections = {Side.DRIVER: dynamics.pinion.bearing, Side.DRIVEN: dynamics.gear.bearing}
+    return tuple((side, section.bearing()) for side, section in sections.items() if section is not None)
 
 
 def bending_shafts(dynamics: Dynamics, stage: GearStage, pair: GearPair) -> tuple[Shaft, Shaft] | None:

@@ -14,6 +14,7 @@ from siggen.gears.damage.layouts import clustered_centres, layered_centres
 from siggen.gears.geometry.gear_pair import Gear, GearPair
 from siggen.gears.geometry.root_chord import root_chord
 from siggen.library.arguments import finite, of_kind, refused
+from siggen.names import PINION, Side
 from siggen.seeding import Stream, generator
 
 __all__ = [
@@ -47,7 +48,7 @@ class Damage:
         Index of the damaged tooth, from 0.
     """
 
-    on: str = "pinion"
+    on: str = PINION
     tooth: int = 0
 
     def missing_m(self, gear: Gear, profile_m: FloatArray, face_m: FloatArray) -> FloatArray:  # noqa: ARG002
@@ -96,7 +97,7 @@ class Pit(Damage):
         What its place across the face is beside `face_mm` [mm].
     """
 
-    on: str = "pinion"
+    on: str = PINION
     tooth: int = 0
     height_mm: float | None = None
     face_mm: float | None = None
@@ -136,7 +137,7 @@ class Spall(Damage):
         Of its edges; 0: sharp [mm].
     """
 
-    on: str = "pinion"
+    on: str = PINION
     tooth: int = 0
     outline_mm: Sequence[tuple[float, float]] = ()
     depth_mm: float = 0.3
@@ -164,13 +165,13 @@ class Crack(Damage):
         Between the crack and the tooth's centre line [degrees].
     """
 
-    on: str = "pinion"
+    on: str = PINION
     tooth: int = 0
     depth_mm: float = 1.0
     angle_deg: float = 45.0
 
     def _entry(self, seat: DamagedPlace) -> dict[str, Any]:
-        chord_mm = 1e3 * root_chord(seat.pair.member(seat.which)).length_m
+        chord_mm = 1e3 * root_chord(seat.pair.member(seat.side)).length_m
         allowed = f"above 0 up to {DEEPEST_SHARE * chord_mm:.4g}, {DEEPEST_SHARE:g} of the root's chord"
         share = finite("depth_mm", self.depth_mm, allowed, 1e-9, DEEPEST_SHARE * chord_mm) / chord_mm
         return {
@@ -193,7 +194,7 @@ class Chip(Damage):
         From the end of the face at 0 [mm]; None: the whole face.
     """
 
-    on: str = "pinion"
+    on: str = PINION
     tooth: int = 0
     height_mm: float | None = 1.0
     width_mm: float | None = None
@@ -247,16 +248,16 @@ class BearingSpall(Damage):
 
 
 class DamagedPlace(NamedTuple):
-    """Where a damage is: a pair with its 'pinion' or 'gear', and the word of a file for gear or bearing."""
+    """Where a damage is: a pair and one of its gears, and the word of a file for gear or bearing."""
 
     pair: GearPair
-    which: str
+    side: Side
     word: str
 
     @property
     def gear(self) -> Gear:
         """The damaged gear as a drawing states it."""
-        return self.pair.driver if self.which == "pinion" else self.pair.driven
+        return self.pair.driver if self.side == Side.DRIVER else self.pair.driven
 
 
 LISTS = {Pit: "pits", Spall: "outlines"}

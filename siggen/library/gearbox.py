@@ -22,7 +22,7 @@ from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.damage import BearingSpall, Damage, DamagedPlace, Wear, entries
 from siggen.library.sensors import DIRECTIONS, Channel, PassedSensor, Sensor, reading_input
 from siggen.library.shape_fault import ShapeFault
-from siggen.names import ROLES, ShaftName
+from siggen.names import ShaftName, Side
 from siggen.record.labels import gearbox_labels
 from siggen.sensing.inputs import Input
 from siggen.sensors.places import PLATE_OF
@@ -291,12 +291,12 @@ class Gearbox:
         specimen, meshes = self._specimen, self._config.names.meshes
         if specimen.planets is not None:
             outer, inner = specimen.planets.pair, specimen.planets.ring
-            seats = (("sun", outer, "pinion"), ("planet", outer, "gear"), (RING, inner, "gear"))
-            return {name: DamagedPlace(one, which, name) for name, one, which in seats}
+            seats = (("sun", outer, Side.DRIVER), ("planet", outer, Side.DRIVEN), (RING, inner, Side.DRIVEN))
+            return {name: DamagedPlace(one, side, name) for name, one, side in seats}
         return {
-            gear.word: DamagedPlace(one.pair, role, gear.word)
+            gear.word: DamagedPlace(one.pair, side, gear.word)
             for mesh, one in zip(meshes, specimen.meshes, strict=True)
-            for role, gear in zip(ROLES, mesh.gears, strict=True)
+            for side, gear in zip(Side, mesh.gears, strict=True)
         }
 
     @property

@@ -35,6 +35,7 @@ from siggen.library.axes import drawing, legend_above, new_axes
 from siggen.library.damage import Damage, DamagedPlace, all_damages, entries
 from siggen.library.gearbox import Gearbox
 from siggen.library.shape_fault import ShapeFault
+from siggen.names import SECTIONS, Side
 from siggen.rig.rating import bearable_torque_nm, rated_torque_nm
 from siggen.specimen.contact import tooth_tables
 from siggen.specimen.static_mesh import static_mesh
@@ -55,7 +56,6 @@ from siggen.views.stiffness_curves import (
 __all__ = ["Curve", "flank_picture", "mesh_stiffness"]
 
 LAWS = ("pairs", "linear")
-GEARS = ("pinion", "gear")
 
 
 @dataclass(frozen=True, repr=False)
@@ -212,10 +212,10 @@ def flank_picture(pair: GearPair, damages: Iterable[Damage], ax: Any = None, *, 
     """
     parts = with_outlines(_parts(pair, damages, "pairs", None), pair)
     finite("tooth", tooth, "an index from 0")
-    on = on or next((one.gear for one in parts), GEARS[0])
+    on = on or next((one.gear for one in parts), Side.DRIVER)
     tooth = next((one.tooth for one in parts if one.gear == on), 0) if tooth < 0 else tooth
-    own = pits_of(parts, one_of("on", on, GEARS), tooth)
-    view = flank_view(pair, "", on, tooth, own)
+    own = pits_of(parts, Side(one_of("on", on, SECTIONS)), tooth)
+    view = flank_view(pair, "", Side(on), tooth, own)
     with drawing() as plt:
         if ax is None:
             height = view.tip_mm - view.foot_mm
@@ -250,9 +250,9 @@ def _parts(pair: GearPair, damages: Iterable[Damage] | str, law: str, loads: Any
     of_kind("pair", pair, GearPair, "a GearPair, such as GearPair.of(teeth=(18, 47), module_mm=3.5, face_width_mm=20)")
     damages = all_damages(damages)
     for one in damages:
-        one_of("on", one.on, GEARS)
+        one_of("on", one.on, SECTIONS)
     with saying({"damage.": "damages."}):
-        sections = _sections(entries(damages, lambda one: DamagedPlace(pair, one.on, one.on)))
+        sections = _sections(entries(damages, lambda one: DamagedPlace(pair, Side(one.on), one.on)))
         shapes = [one for one in damages if one.is_shape]
         sections += tuple(ShapeFault(gear=one.on, number=i, damage=one) for i, one in enumerate(shapes))
         problems = [

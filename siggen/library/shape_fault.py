@@ -15,6 +15,7 @@ from siggen.gears.damage.lost_shape import LostShape
 from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import Gear, GearPair
 from siggen.library.damage import Damage
+from siggen.names import Side
 
 
 class ShapeFault(Fault):
@@ -33,7 +34,7 @@ class ShapeFault(Fault):
         return (self._on(growth.pair),)
 
     def _on(self, pair: GearPair) -> LostShape:
-        return shape_of(self.damage, pair.driver if self.gear == "pinion" else pair.driven, self.gear)
+        return shape_of(self.damage, pair.driver if self.side == Side.DRIVER else pair.driven, self.side)
 
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:
         """Yield what is wrong with its depths."""
@@ -45,7 +46,7 @@ class ShapeFault(Fault):
         yield "tooth", self.gear, (self.damage.tooth,)
 
 
-def shape_of(damage: Damage, gear: Gear, which: str) -> LostShape:
-    """Return a damage of a user's own kind on 'pinion' or 'gear', as contacts know it."""
+def shape_of(damage: Damage, gear: Gear, side: Side) -> LostShape:
+    """Return a damage of a user's own kind on a gear of a pair, as contacts know it."""
     shape: Callable[..., Any] = partial(damage.missing_m, gear)
-    return LostShape(which, damage.tooth, shape, type(damage).__name__.lower())
+    return LostShape(side, damage.tooth, shape, type(damage).__name__.lower())

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.faults.flank_place import GearName
 from siggen.gears.geometry.contact_zones import contact_zones
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.damage_summary import flank_arc_m
+from siggen.names import Side
 
 PLACES = 65
 """Along the flank at which its curvature is known."""
@@ -22,8 +22,8 @@ class Flank:
 
     Attributes
     ----------
-    gear : str
-        'pinion' or 'gear'.
+    gear : Side
+        Its gear.
     teeth : int
     turns : float
         Of this gear per turn of the pinion.
@@ -37,7 +37,7 @@ class Flank:
         Arcs of single contact below the pitch line [m], and the relative curvature of both flanks there [1/m].
     """
 
-    gear: GearName
+    gear: Side
     teeth: int
     turns: float
     face_m: float
@@ -62,20 +62,20 @@ class Flank:
 
 def flanks(pair: GearPair) -> tuple[Flank, Flank]:
     """Return the flanks of pinion and gear."""
-    return _flank(pair, "pinion"), _flank(pair, "gear")
+    return _flank(pair, Side.DRIVER), _flank(pair, Side.DRIVEN)
 
 
-def _flank(pair: GearPair, which: GearName) -> Flank:
-    gear, line = pair.member(which), pair.line_of_action_m
+def _flank(pair: GearPair, side: Side) -> Flank:
+    gear, line = pair.member(side), pair.line_of_action_m
     zone = next(z for z in contact_zones(pair) if z.start_m <= pair.pitch_point_m <= z.end_m)
-    if which == "pinion":
+    if side == Side.DRIVER:
         first, low, pitch = pair.contact_start_m, zone.start_m, pair.pitch_point_m
     else:
         first, low, pitch = line - pair.contact_end_m, line - zone.end_m, line - pair.pitch_point_m
     travel = np.linspace(low, pitch, PLACES)
     to_arc = 0.5 / gear.base_radius_m
     return Flank(
-        which,
+        side,
         gear.teeth,
         pair.pinion.teeth / gear.teeth,
         pair.face_width_m,

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.faults.flank_place import GearName
 from siggen.life.flank import Flank
+from siggen.names import Side
 
 MOST_PITS = 32
 """Of one tooth: more of them have long grown into each other."""
@@ -24,7 +24,7 @@ class Begun(NamedTuple):
     """A pit that begins at a damage time [turns of the pinion]."""
 
     time: float
-    gear: GearName
+    gear: Side
     tooth: int
     number: int
 

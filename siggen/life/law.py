@@ -19,6 +19,7 @@ from siggen.arrays import FloatArray
 from siggen.faults.fault import Fault
 from siggen.keys.section import Section
 from siggen.life.flank import Flank
+from siggen.names import Side
 
 Named = Callable[[str], np.random.Generator]
 """Name of what is drawn -> its generator; other names never shift its stream."""
@@ -37,7 +38,7 @@ class Wearing:
 class ToothTruth:
     """One damaged tooth at an instant; `begun` is the damage time of its first damage [turns], `area_m2` a union."""
 
-    gear: str
+    gear: Side
     tooth: int
     begun: float
     count: int
@@ -49,7 +50,7 @@ class ToothTruth:
 class PartTruth:
     """One pit over its whole life: where and when it began [turns], with which share, and its mean rate [1/turn]."""
 
-    gear: str
+    gear: Side
     tooth: int
     number: int
     begun: float
@@ -63,7 +64,7 @@ class PartTruth:
 class Picture:
     """A picture of one flank, as PNG."""
 
-    gear: str
+    gear: Side
     tooth: int
     png: bytes
 
@@ -75,7 +76,7 @@ class Ends:
     first_pit: float
     rated: float
     functional: float
-    gear: str
+    gear: Side
     tooth: int
 
 

@@ -26,6 +26,7 @@ from siggen.life.law import Ends, Law, Named, PartTruth, Picture, ToothTruth, We
 from siggen.life.outline import Edges, PitShape, drawn_shape, sizes_m, through, union_m2
 from siggen.life.outlook import Chances, Now, failing_times, through_share
 from siggen.life.picture import flank_png
+from siggen.names import Side
 
 UNIT_REV = 6.9e6
 """Weibull scale of a gearbox's first pit, in turns of the pinion at reference torque."""
@@ -200,13 +201,13 @@ class PittingCourse:
             for flank in self.wearing.flanks
         ])  # fmt: skip
 
-    def _first_share(self, gear: str) -> float:
+    def _first_share(self, gear: Side) -> float:
         """Return the median share of a young pit: its area is that on the nominal flank."""
-        nominal = self.wearing.nominal[("pinion", "gear").index(gear)]
+        nominal = self.wearing.nominal[gear.number]
         return FIRST_SHARE * (nominal.area_m2 / self._flank(gear).area_m2)
 
-    def _flank(self, gear: str) -> Flank:
-        return self.wearing.flanks[("pinion", "gear").index(gear)]
+    def _flank(self, gear: Side) -> Flank:
+        return self.wearing.flanks[gear.number]
 
     def _truth(self, pits: list[PitBirth], outlines: list[Edges]) -> ToothTruth:
         one = pits[0].begun
@@ -257,7 +258,7 @@ class PittingCourse:
 
     def _pit(self, one: Begun) -> PitBirth:
         named = self._named(one)
-        own, flank = ("pinion", "gear").index(one.gear), self._flank(one.gear)
+        own, flank = one.gear.number, self._flank(one.gear)
         size, rate = named("growth").standard_normal(2).tolist()
         share = self._first_share(one.gear) * np.exp(FIRST_SHARE_SD * size)
         owner = one.tooth + own * self.wearing.flanks[0].teeth
@@ -307,7 +308,7 @@ def _failing(course: PittingCourse, pits: list[PitBirth], grown_pits: Grown) -> 
         pits[0].begun.time,
         _first(rated, pits[0].begun.time, grown_pits.last),
         functional,
-        ("pinion", "gear")[gear],
+        tuple(Side)[gear],
         owner - gear * teeth[0],
     )
 

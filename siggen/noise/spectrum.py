@@ -16,6 +16,7 @@ from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, Within, at
 from siggen.keys.problems import refusal
 from siggen.keys.section import Real, Section
+from siggen.names import Side
 from siggen.noise.source import Draws, MeasuredPart, NoisePart, NoisyChannel, Source
 from siggen.sensing.force_density import tabulated
 from siggen.sensing.modulation import SHAFT_LINES, LevelCourse, shaft_course, shaft_phasors
@@ -117,7 +118,7 @@ class NoiseStrength:
         }
         time_ms = at(LEVEL_TIME_MS, draws.level("noise_spectrum.modulation.level_time_ms", rng))
         self._phasors = []
-        for shaft, depth, order in (("pinion", "driver_depth", 1.0), ("gear", "driven_depth", gear_order)):
+        for shaft, depth, order in zip(Side, ("driver_depth", "driven_depth"), (1.0, gear_order), strict=True):
             uniforms = [draws.specimen(f"noise_spectrum.modulation.{shaft}.{k}") for k in range(SHAFT_LINES)]
             self._phasors.append((order, shaft_phasors(numbers[depth], 2.0 * pi * np.array(uniforms))))
         self._level = LevelCourse(numbers["level_std"], 1e-3 * time_ms * fs_hz, rng)

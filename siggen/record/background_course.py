@@ -14,6 +14,7 @@ from siggen.dynamics.drive.drive import Rotation
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.names import Side
 from siggen.planning.plan import PlannedRecord
 from siggen.seeding import Stream, named_generator, named_uniforms
 from siggen.sensing.modulation import SHAFT_LINES, shaft_phasors
@@ -30,7 +31,7 @@ class BackgroundCourse:
     """
 
     angle_rad: FloatArray
-    orders: Mapping[str, float]
+    orders: Mapping[Side, float]
     turns: Mapping[str, ComplexArray]
     fs_hz: float
     history: int
@@ -60,7 +61,7 @@ class BackgroundCourse:
         """Return phases (count,) of the gearbox."""
         return 2.0 * pi * self.of_gearbox(f"background.{name}.phases").random(count)
 
-    def shaft_lines(self, shaft: str, depth: float, turn: float = 0.0) -> FloatArray:
+    def shaft_lines(self, shaft: Side, depth: float, turn: float = 0.0) -> FloatArray:
         """Return the modulation (length,) by a shaft, the same for all its sources but for a part of a turn."""
         later = 2.0 * pi * turn * np.arange(1.0, SHAFT_LINES + 1.0)
         phase_rad = self.phases(f"modulation.{shaft}", SHAFT_LINES) + later
@@ -75,10 +76,10 @@ def course_at(
     # a fast length may reach further back than any force is followed; there the shaft stands still
     time_s = np.maximum((np.arange(count) + first) / fs_hz, -TRANSIENT_CAP_S)
     angle_rad = rotation.angle_rad(time_s)
-    orders = {"pinion": 1.0, "gear": pair.pinion.teeth / pair.gear.teeth}
+    orders = {Side.DRIVER: 1.0, Side.DRIVEN: pair.pinion.teeth / pair.gear.teeth}
     of_mesh = point
     if specimen.planets is not None:
-        orders["gear"] = float(specimen.planets.teeth.carrier_turns)
+        orders[Side.DRIVEN] = float(specimen.planets.teeth.carrier_turns)
         of_mesh = specimen.planets.of_one_mesh(point)
     return BackgroundCourse(
         angle_rad,

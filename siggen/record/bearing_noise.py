@@ -22,7 +22,7 @@ from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
 from siggen.dynamics.drive.comb import Comb, harmonic_sum, turns_of
 from siggen.gearbox.background import BearingLevels
 from siggen.gearbox.specimen import Specimen
-from siggen.names import ShaftName
+from siggen.names import ShaftName, Side
 from siggen.record.background_course import BackgroundCourse
 from siggen.sensing.force_density import tabulated
 from siggen.sensing.modulation import LevelCourse, shaft_course
@@ -69,9 +69,9 @@ class _Seat:
     axis: str
 
     @property
-    def shaft(self) -> str:
-        """Its shaft, as sections call it."""
-        return self.named.inner
+    def shaft(self) -> Side:
+        """Its shaft, by the first mesh's gear on it."""
+        return Side(self.named.inner)
 
     @property
     def stream(self) -> str:
@@ -82,7 +82,7 @@ class _Seat:
 class BearingVelocities:
     """Velocities [m/s] of each bearing's waves, from the first sample of a course on; by input of the background."""
 
-    def __init__(self, bearings: Mapping[str, BearingLevels], course: BackgroundCourse, specimen: Specimen) -> None:
+    def __init__(self, bearings: Mapping[Side, BearingLevels], course: BackgroundCourse, specimen: Specimen) -> None:
         self._bearings = bearings
         self._loaded = specimen_bearings(specimen)
         self._sense = {shaft: cage_sense(shaft, housed=specimen.housed) for shaft in bearings}
@@ -142,12 +142,12 @@ class BearingVelocities:
         return found
 
 
-def _taps(levels: BearingLevels, course: BackgroundCourse, shaft: str) -> FloatArray:
+def _taps(levels: BearingLevels, course: BackgroundCourse, shaft: Side) -> FloatArray:
     shaft_hz = course.point.speed_hz * course.orders[shaft]
     return shape_taps(lambda f: velocity_density(levels, shaft_hz, f), TAPS, course.fs_hz)
 
 
-def _level(shaft: str, levels: BearingLevels, course: BackgroundCourse) -> LevelCourse:
+def _level(shaft: Side, levels: BearingLevels, course: BackgroundCourse) -> LevelCourse:
     memory = levels.level_time_s * course.fs_hz
     rng = course.of_record(f"background.bearings.{shaft}.level")
     return LevelCourse(levels.level_std, memory, rng)

@@ -11,14 +11,14 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.damage_summary import damage_summary
 from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
 from siggen.gears.stiffness.mesh_tables import largest_stiffness_loss
-from siggen.names import ROLES, SEVERAL
+from siggen.names import SEVERAL, Side
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.specimen_housing import MODES_ON_BOLTS
 from siggen.specimen.static_mesh import StaticMesh
 
 
 def _faulty_gear(parts: Parts) -> str:
-    found = {one.gear for one in parts} & set(ROLES)
+    found = {one.gear for one in parts} & set(Side)
     return SEVERAL if len(found) > 1 else next(iter(found), "none")
 
 
@@ -40,8 +40,8 @@ def damage_labels(
         "fault": state.fault,
         "severity": state.severity,
         "faulty_gear": _faulty_gear(shown),
-        "faulty_teeth_pinion": teeth_of(shown, "pinion"),
-        "faulty_teeth_gear": teeth_of(shown, "gear"),
+        "faulty_teeth_pinion": teeth_of(shown, Side.DRIVER),
+        "faulty_teeth_gear": teeth_of(shown, Side.DRIVEN),
         "damage_count": len(shown),
         "damaged_area_mm2": 1e6 * summary.union_area_m2,
         "damaged_area_share": summary.area_share,

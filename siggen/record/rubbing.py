@@ -18,6 +18,7 @@ from siggen.arrays import FloatArray
 from siggen.compiled import entry
 from siggen.dynamics.friction.rubbing_course import rubbing_course
 from siggen.gearbox.background import BurstLevels, RubbingLevels
+from siggen.names import Side
 from siggen.record.background_course import BackgroundCourse
 from siggen.sensing.force_density import contact_bandwidth_hz, contact_filter
 from siggen.sensing.modulation import LevelCourse, periodic_course, replayed, shaft_course
@@ -117,7 +118,7 @@ def force_spectrum(rubbing: RubbingLevels, course: BackgroundCourse) -> ForceSpe
     )
 
 
-def shaft_pattern(spectrum: ForceSpectrum, course: BackgroundCourse, shaft: str, order: float) -> FloatArray:
+def shaft_pattern(spectrum: ForceSpectrum, course: BackgroundCourse, shaft: Side, order: float) -> FloatArray:
     """Return what one gear replays over its revolution (points,), of the same density as n at the nominal speed.
 
     Four points per sample: read linearly between them, it is damped by 10 % at half the sampling rate at most.
@@ -143,7 +144,7 @@ def modulation(rubbing: RubbingLevels, course: BackgroundCourse, level: FloatArr
     """Return M (length,) of a random level (length,)."""
     table = rubbing_course(course.pair, rubbing.sliding_exponent)
     mesh = periodic_course(course.angle_rad, course.pair.pinion.teeth, table)
-    depths = {"pinion": rubbing.pinion_depth, "gear": rubbing.gear_depth}
+    depths = {Side.DRIVER: rubbing.pinion_depth, Side.DRIVEN: rubbing.gear_depth}
     shafts = [course.shaft_lines(shaft, depth) for shaft, depth in depths.items()]
     return np.asarray(mesh * shaft_course(shafts) * level)
 

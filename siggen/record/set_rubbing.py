@@ -17,6 +17,7 @@ from siggen.dynamics.drive.comb import turns_of
 from siggen.gearbox.background import RubbingLevels
 from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.names import Side
 from siggen.record.background_course import BackgroundCourse
 from siggen.record.rubbing import RubbingForce
 from siggen.specimen.background import AXES, EVEN, SET_MESHES
@@ -74,5 +75,5 @@ class SetRubbing:
         )
 
 
-def _orders(pair: GearPair) -> dict[str, float]:
-    return {"pinion": 1.0, "gear": pair.pinion.teeth / pair.gear.teeth}
+def _orders(pair: GearPair) -> dict[Side, float]:
+    return {Side.DRIVER: 1.0, Side.DRIVEN: pair.pinion.teeth / pair.gear.teeth}

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from siggen.gearbox.specimen import Specimen
-from siggen.names import ROLES, SEVERAL
+from siggen.names import SEVERAL, Side
 from siggen.specimen.static_mesh import StaticMesh
 
 ADDED = ("damage_count", "damaged_area_mm2")
@@ -26,7 +26,7 @@ def stage_labels(first: Mapping[str, Any], behind: Mapping[str, Mapping[str, Any
     teeth = {
         f"faulty_teeth_{name}_{gear}": labels[f"faulty_teeth_{gear}"]
         for name, labels in behind.items()
-        for gear in ROLES
+        for gear in Side
     }
     added = {key: sum(labels[key] for labels in every) for key in ADDED}
     largest = {key: max(labels[key] for labels in every) for key in LARGEST}
@@ -46,7 +46,7 @@ def stage_operating_labels(
     for mesh, static, turned in zip(specimen.behind, behind, specimen.shaft_turns[1:], strict=False):
         pair = static.pair
         losses.append(static.largest_loss(float(first["torque_nm"]) / float(turned)))
-        found |= {f"teeth_{mesh.inner}_{gear}": pair.member(gear).teeth for gear in ROLES}
+        found |= {f"teeth_{mesh.inner}_{gear}": pair.member(gear).teeth for gear in Side}
         found[f"mesh_{mesh.inner}_hz"] = shaft_hz * pair.pinion.teeth
         shaft_hz *= pair.pinion.teeth / pair.gear.teeth
         found[f"{mesh.inner}_shaft_hz"] = shaft_hz

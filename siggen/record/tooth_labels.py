@@ -8,7 +8,7 @@ import numpy as np
 
 from siggen.gearbox.tooth_errors import MadeGear, SpecimenErrors
 from siggen.gears.errors.flank_waves import FlankWaves
-from siggen.names import DRIVEN, DRIVER, ROLES
+from siggen.names import Side
 from siggen.specimen.mesh_teeth import MeshTeeth
 
 Labels = dict[str, object]
@@ -20,7 +20,7 @@ def tooth_labels(teeth: MeshTeeth, state_id: int) -> Labels:
     if errors is None:
         return {}
     drawn: Labels = {"manufacture_draw": "state" if teeth.teeth.redrawn else "specimen"}
-    of_gears = (_errors(errors, teeth, which, which) | _waves(teeth, state_id, which, which) for which in ROLES)
+    of_gears = (_errors(errors, teeth, side, side) | _waves(teeth, state_id, side, side) for side in Side)
     for labels in of_gears:
         drawn |= labels
     return drawn | {"lead_misalignment_um": 1e6 * errors.lead_misalignment_m}
@@ -31,16 +31,16 @@ def ring_and_planet_labels(suns: Sequence[MeshTeeth], ring: MeshTeeth, state_id:
     of_ring = ring.errors(state_id)
     if of_ring is None:
         return {}
-    planets = [_errors(errors, sun, DRIVEN, each) for sun in suns if (errors := sun.errors(state_id)) is not None]
+    planets = [_errors(errors, sun, Side.DRIVEN, each) for sun in suns if (errors := sun.errors(state_id)) is not None]
     return {
-        **_errors(of_ring, ring, DRIVEN, "ring"),
-        **_waves(ring, state_id, DRIVEN, "ring"),
+        **_errors(of_ring, ring, Side.DRIVEN, "ring"),
+        **_waves(ring, state_id, Side.DRIVEN, "ring"),
         **{name: [one[name] for one in planets] for name in planets[0]},
     }
 
 
-def _errors(errors: SpecimenErrors, teeth: MeshTeeth, which: str, word: str) -> Labels:
-    made: MadeGear = {DRIVER: errors.pinion, DRIVEN: errors.gear}[which]
+def _errors(errors: SpecimenErrors, teeth: MeshTeeth, side: Side, word: str) -> Labels:
+    made: MadeGear = {Side.DRIVER: errors.pinion, Side.DRIVEN: errors.gear}[side]
     kinds = teeth.teeth.made
     largest, helix = made.found.largest, made.helix
     labels: Labels = {
@@ -61,13 +61,13 @@ def _errors(errors: SpecimenErrors, teeth: MeshTeeth, which: str, word: str) -> 
     return labels
 
 
-def _waves(teeth: MeshTeeth, state_id: int, which: str, word: str) -> Labels:
+def _waves(teeth: MeshTeeth, state_id: int, side: Side, word: str) -> Labels:
     """Return the orders of a gear's ghosts, per turn of its shaft, and amplitudes before the contact's width."""
     waves = teeth.waves(state_id)
     if waves is None:
         return {}
-    drawn: FlankWaves = {DRIVER: waves.pinion, DRIVEN: waves.gear}[which]
-    count = waves.ghosts[which]
+    drawn: FlankWaves = {Side.DRIVER: waves.pinion, Side.DRIVEN: waves.gear}[side]
+    count = waves.ghosts[side]
     return {
         f"ghost_orders_{word}": [int(n) for n in drawn.waves[:count]],
         f"ghost_amplitudes_{word}_um": [1e6 * float(a) for a in drawn.amplitude_m[:count]],

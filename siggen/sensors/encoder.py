@@ -15,6 +15,7 @@ from siggen.errors import Problem, SolverFailure
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Whole
 from siggen.keys.usual import Usual
+from siggen.names import PINION
 from siggen.sensing.inputs import SHAFT, Input
 from siggen.sensing.pulses import counted_speed, disc_marks, pulse_times
 from siggen.sensors.converter import BITS_TEXT, Bits
@@ -43,7 +44,7 @@ class Encoder(SensorBase):
 
     kind: Literal["encoder"] = Field(description="angular speed of a shaft, from the pulses of a disc")
     place: Annotated[str, TURNING] = Field(
-        default="pinion",
+        default=PINION,
         description="what it turns with, a gear of any mesh",
     )
     axes: Annotated[tuple[Literal["rotation"], ...], Field(min_length=1)] = Field(

@@ -25,6 +25,7 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.names import Side
 from siggen.specimen.contact import slice_shares, tooth_tables
 from siggen.specimen.motion import SpecimenMesh
 from siggen.specimen.static_mesh import StaticMesh, static_mesh
@@ -56,7 +57,7 @@ def with_static_back(
     """
     pair = mesh.pair
     mirrored = tuple(
-        replace(one, tooth=-one.tooth % pair.member(one.gear).teeth)  # type: ignore[type-var]
+        replace(one, tooth=-one.tooth % pair.member(Side(one.gear)).teeth)  # type: ignore[type-var]
         for one in on_both_flanks(parts)
     )
     if not mirrored:

@@ -29,7 +29,7 @@ from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gearbox.background import MACHINES, DrawnBackground
 from siggen.gearbox.specimen import Specimen
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.names import ROLES
+from siggen.names import Side
 from siggen.sensing.sensor_response import resonance_response
 from siggen.specimen.forced_ways import ChannelWay, Forcing, forced_ways
 from siggen.specimen.structure import linear_structure, linear_train
@@ -152,7 +152,7 @@ def mesh_directions(assembled: Structure) -> dict[str, FloatArray]:
 
 def bearing_inputs(assembled: Structure) -> tuple[str, ...]:
     """Return the bearings of both shafts that machines stand beside, with their axes."""
-    return tuple(f"{place}/{axis}" for place in bearing_places(assembled)[: len(ROLES)] for axis in AXES[::-1])
+    return tuple(f"{place}/{axis}" for place in bearing_places(assembled)[: len(Side)] for axis in AXES[::-1])
 
 
 def _pressed(assembled: Structure, turn_rad: float) -> dict[str, dict[str, float]]:
@@ -172,8 +172,8 @@ def _turned(rows: FloatArray, angle: float) -> FloatArray:
     return np.asarray(cos(angle) * rows[0] + sin(angle) * rows[1])
 
 
-def _on_rotor(assembled: Structure, shaft: str) -> FloatArray:
-    return shaft_directions(assembled, bearing_places(assembled)[ROLES.index(shaft)])
+def _on_rotor(assembled: Structure, shaft: Side) -> FloatArray:
+    return shaft_directions(assembled, bearing_places(assembled)[shaft.number])
 
 
 def _on_base(assembled: Structure) -> FloatArray:
@@ -184,7 +184,7 @@ def _on_base(assembled: Structure) -> FloatArray:
     return np.array([machine.row(Place(BASE), axis) for axis in AXES])
 
 
-def _stand(assembled: Structure, shaft: str) -> FloatArray:
+def _stand(assembled: Structure, shaft: Side) -> FloatArray:
     """Return where a machine presses: on the base, or on its shaft of a gearbox without one."""
     base = assembled.drivetrain.body.get(BASE)
     return _on_base(assembled) if base is not None and base.coordinates else _on_rotor(assembled, shaft)

@@ -21,6 +21,7 @@ from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.gears.damage.part import Part, Parts
+from siggen.names import Side
 from siggen.planning.plan import PlannedRecord
 from siggen.seeding import Stream, named_generator
 from siggen.specimen.loaded_bearings import BEARINGS
@@ -50,7 +51,7 @@ def spall_sources(
     for drawn in in_bearings(parts):
         own = bearings.get(drawn.shaft)
         spall = drawn if own is None else replace(drawn, bearing=own.bearing)
-        order = 1.0 if spall.shaft == "pinion" else specimen.pair.pinion.teeth / specimen.pair.gear.teeth
+        order = 1.0 if spall.shaft == Side.DRIVER else specimen.pair.pinion.teeth / specimen.pair.gear.teeth
         place = specimen.names.bearings[spall.place]
         force_n = mean_force_n(specimen, structure, point, place) / BEARINGS if own is None else own.force_n
         shares = _transmitted(specimen, structure, spall.shaft, place)
@@ -74,7 +75,7 @@ def mean_force_n(specimen: Specimen, structure: Structure, point: OperatingPoint
     return np.asarray(-shaft_directions(structure, place) @ along)
 
 
-def _transmitted(specimen: Specimen, structure: Structure, shaft: str, place: str) -> FloatArray:
+def _transmitted(specimen: Specimen, structure: Structure, shaft: Side, place: str) -> FloatArray:
     """Return the share (2, 2) of a bearing's lost load that shaft and seat feel: along both axes, by loss along both.
 
     What moves in series with a bearing's spring is felt through all that is in series with it: the shaft's bending, the

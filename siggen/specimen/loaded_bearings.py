@@ -16,42 +16,43 @@ from siggen.dynamics.bearings.loaded_bearing import LoadedBearing, loaded_bearin
 from siggen.dynamics.structure.gear_stage import GearStage, Rotor
 from siggen.gearbox.specimen import PairTrain
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.names import Side
 
 BEARINGS = 2
 """Of a shaft: each bears half of the force and has half of their stiffness."""
 GRAVITY_M_S2 = 9.81
 
 
-def loaded_bearings(train: PairTrain, pair: GearPair, torque_nm: float, *, housed: bool) -> dict[str, LoadedBearing]:
+def loaded_bearings(train: PairTrain, pair: GearPair, torque_nm: float, *, housed: bool) -> dict[Side, LoadedBearing]:
     """Return one of both bearings of each shaft whose stiffness follows the load, under a torque on the pinion."""
     found = {}
-    for which, ball_bearing in train.balls:
-        mass_kg = getattr(train.first, which).mass_kg
-        force_n = shaft_load_n(pair, which, torque_nm, mass_kg, housed=housed)
-        found[which] = loaded_bearing(ball_bearing, force_n / BEARINGS)
+    for side, ball_bearing in train.balls:
+        mass_kg = getattr(train.first, side).mass_kg
+        force_n = shaft_load_n(pair, side, torque_nm, mass_kg, housed=housed)
+        found[side] = loaded_bearing(ball_bearing, force_n / BEARINGS)
     return found
 
 
-def shaft_load_n(pair: GearPair, which: str, torque_nm: float, mass_kg: float, *, housed: bool) -> FloatArray:
+def shaft_load_n(pair: GearPair, side: Side, torque_nm: float, mass_kg: float, *, housed: bool) -> FloatArray:
     """Return the mean force (2,) on a shaft, horizontal and upward [N]: of the teeth and of its weight."""
     angle, force_n = pair.working_pressure_angle_rad, torque_nm / pair.pinion.base_radius_m
     # Horizontal runs from the gear to the pinion in a casing, else back. Either flank pushes the gears apart.
     apart = 1.0 if housed else -1.0
     on_pinion = np.array([apart * sin(angle) * abs(force_n), -cos(angle) * force_n])
-    return np.asarray((on_pinion if which == "pinion" else -on_pinion) - np.array([0.0, mass_kg * GRAVITY_M_S2]))
+    return np.asarray((on_pinion if side == Side.DRIVER else -on_pinion) - np.array([0.0, mass_kg * GRAVITY_M_S2]))
 
 
-def cage_sense(which: str, *, housed: bool) -> float:
+def cage_sense(side: Side, *, housed: bool) -> float:
     """Return 1 where a shaft turns from horizontal to upward, -1 where back: the pinion's mesh goes up, beside it."""
     pinion = -1.0 if housed else 1.0
-    return pinion if which == "pinion" else -pinion
+    return pinion if side == Side.DRIVER else -pinion
 
 
-def on_loaded_bearings(stage: GearStage, found: dict[str, LoadedBearing]) -> GearStage:
+def on_loaded_bearings(stage: GearStage, found: dict[Side, LoadedBearing]) -> GearStage:
     """Return a stage on bearings under load."""
-    rotors = {"pinion": stage.pinion, "gear": stage.gear}
-    rotors |= {which: on_loaded_bearing(rotors[which], one) for which, one in found.items()}
-    return replace(stage, pinion=rotors["pinion"], gear=rotors["gear"])
+    rotors = {Side.DRIVER: stage.pinion, Side.DRIVEN: stage.gear}
+    rotors |= {side: on_loaded_bearing(rotors[side], one) for side, one in found.items()}
+    return replace(stage, pinion=rotors[Side.DRIVER], gear=rotors[Side.DRIVEN])
 
 
 def on_loaded_bearing(rotor: Rotor, one: LoadedBearing) -> Rotor:

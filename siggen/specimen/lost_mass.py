@@ -22,6 +22,7 @@ from siggen.dynamics.structure.structure import Structure
 from siggen.gears.damage.lost_mass import LostMetals, lost_moment_kg_m, without_metal
 from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.names import Side
 
 
 class MeshPlace(NamedTuple):
@@ -43,29 +44,29 @@ def lost_mass_sources(
     In a model of rotations alone no shaft can shake, so there is none.
     """
     lost = without_metal(parts) if structure.bearing_directions else ()
-    by_gear = {which: tuple(one for one in lost if one.gear == which) for which in ("pinion", "gear")}
-    return tuple(_unbalance(pair, structure, which, own, place) for which, own in by_gear.items() if own)
+    by_gear = {side: tuple(one for one in lost if one.gear == side) for side in Side}
+    return tuple(_unbalance(pair, structure, side, own, place) for side, own in by_gear.items() if own)
 
 
-def tooth_angle_rad(pair: GearPair, which: str, tooth: int) -> float:
+def tooth_angle_rad(pair: GearPair, side: Side, tooth: int) -> float:
     """Return where a tooth's centre line is while the pinion's angle is 0, from e in the sense of rotation [rad]."""
-    gear = pair.member(which)
+    gear = pair.member(side)
     behind = 2.0 * pi * tooth / gear.teeth
-    if which == "pinion":
+    if side == Side.DRIVER:
         return pair.contact_start_m / gear.base_radius_m - gear.base_half_angle_rad - behind
     own_end = pair.line_of_action_m - pair.contact_start_m
     return gear.base_half_angle_rad - own_end / gear.base_radius_m - behind
 
 
-def _unbalance(pair: GearPair, structure: Structure, which: str, lost: LostMetals, at: MeshPlace) -> Unbalance:
-    gear, driven = pair.member(which), int(which == "gear")
+def _unbalance(pair: GearPair, structure: Structure, side: Side, lost: LostMetals, at: MeshPlace) -> Unbalance:
+    gear, driven = pair.member(side), int(side == Side.DRIVEN)
     mesh = structure.drivetrain.meshes[at.number]
     directions = gear_directions(structure, (mesh.driven if driven else mesh.driver).body)
     sense = turning_sense(structure, bearing_places(structure)[at.number + driven])
     begins_rad = 2.0 * pi * at.turned_pitches / gear.teeth
     moment = -sum(
         lost_moment_kg_m(gear, one, pair.face_width_m)
-        * exp(1j * sense * (tooth_angle_rad(pair, which, one.tooth) + begins_rad))
+        * exp(1j * sense * (tooth_angle_rad(pair, side, one.tooth) + begins_rad))
         for one in lost
     )
     # A gear that moves along -e slides its flank forwards over its mate's.

@@ -22,7 +22,7 @@ from siggen.dynamics.housing.motion import PlatePlace, WallMotion, motion_at, se
 from siggen.dynamics.structure.gear_stage import Point
 from siggen.gearbox.housing import Mount, Plates
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.names import ROLES
+from siggen.names import Side
 from siggen.specimen.specimen_housing import MODES_ON_BOLTS, BoltMotions, SpecimenHousing, second_stage
 
 AXES = {"horizontal": Axis.X, "vertical": Axis.Y, "axial": Axis.Z}
@@ -34,7 +34,7 @@ def plate_housing(plates: Plates, pair: GearPair, bearings: Sequence[str]) -> Sp
     """Return a box of plates with its modes; `bearings` are those of the pinion's and the gear's shaft."""
     box, modes, ratio = damped_modes(plates)
     pushed = pair.helix_rad != 0.0
-    seats = _seats(box, modes, plates.front_share, dict(zip(ROLES, bearings, strict=True)), located=pushed)
+    seats = _seats(box, modes, plates.front_share, dict(zip(Side, bearings, strict=True)), located=pushed)
     return SpecimenHousing(
         modes=modes,
         damping_ratio=ratio,
@@ -138,5 +138,5 @@ def _drive(box: Box, modes: BoxModes, shares: tuple[float, float]) -> dict[str, 
 
 def _from_middle(box: Box, x_m: float) -> Point:
     """Return where a place of the floor lies from the middle between both shafts."""
-    first, second = box.seats["gear"], box.seats["pinion"]
+    first, second = box.seats[Side.DRIVEN], box.seats[Side.DRIVER]
     return x_m - 0.5 * (first.x_m + second.x_m), -0.5 * (first.y_m + second.y_m)

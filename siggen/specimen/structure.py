@@ -13,6 +13,7 @@ from siggen.dynamics.structure.makers import Housing, planetary_train, train
 from siggen.dynamics.structure.structure import Structure, assembled
 from siggen.gearbox.housing import Block
 from siggen.gearbox.specimen import Specimen
+from siggen.names import Side
 from siggen.specimen.housing import specimen_housing
 from siggen.specimen.loaded_bearings import loaded_bearings, on_loaded_bearings
 from siggen.specimen.planetary_housing import rigid_housing_of_set, set_in_housing
@@ -68,7 +69,7 @@ def supported_stage(specimen: Specimen) -> GearStage:
     return on_loaded_bearings(specimen.train.first, specimen_bearings(specimen))
 
 
-def specimen_bearings(specimen: Specimen) -> dict[str, LoadedBearing]:
+def specimen_bearings(specimen: Specimen) -> dict[Side, LoadedBearing]:
     """Return one of both bearings of each shaft whose stiffness follows the load."""
     if specimen.bearing_point is None or specimen.train is None:
         return {}

@@ -21,7 +21,7 @@ from siggen.gears.contact.table_columns import TableSolver, row_faces, table_sol
 from siggen.gears.contact.table_options import face_slices
 from siggen.gears.damage.tooth_damage import damaged_teeth, has_extent, pits_of
 from siggen.keys.problems import nearest
-from siggen.names import ROLES, MeshName, Names
+from siggen.names import MeshName, Names, Side
 from siggen.planning.plan import PlannedRecord
 from siggen.record.internals import record_internals
 from siggen.record.specimen_state import SpecimenState, refused_as
@@ -104,10 +104,10 @@ def face_pressure(
         )
     state, point, angle_rad, found = record_internals(specimen, record)
     meshes = list(_meshes(specimen, state, point, angle_rad))
-    mesh, which, tooth = _looked_at(meshes, called, tooth)
-    engagement = _engagement(mesh, which, tooth)
+    mesh, side, tooth = _looked_at(meshes, called, tooth)
+    engagement = _engagement(mesh, side, tooth)
     with refused_as("outside_model"):
-        return _solved(specimen.law, mesh, record.state_id, (which, tooth, engagement), found)
+        return _solved(specimen.law, mesh, record.state_id, (side, tooth, engagement), found)
 
 
 def pressure_table(pressure: FacePressure) -> pa.Table:
@@ -138,7 +138,7 @@ class _Mesh:
     state: SpecimenState
     point: OperatingPoint
     angle_rad: FloatArray
-    words: Mapping[str, str]
+    words: Mapping[Side, str]
 
 
 def _meshes(specimen: Specimen, state: SpecimenState, point: OperatingPoint, angle_rad: FloatArray) -> Iterator[_Mesh]:
@@ -151,8 +151,8 @@ def _meshes(specimen: Specimen, state: SpecimenState, point: OperatingPoint, ang
         yield _Mesh(prefixes[number], teeth[number], own, behind.at(point), turned, words[number])
 
 
-def _words(mesh: MeshName) -> Mapping[str, str]:
-    return dict(zip(ROLES, (gear.word for gear in mesh.gears), strict=True))
+def _words(mesh: MeshName) -> Mapping[Side, str]:
+    return dict(zip(Side, (gear.word for gear in mesh.gears), strict=True))
 
 
 def _gear_called(names: Names, gear: str) -> str:
@@ -163,40 +163,40 @@ def _gear_called(names: Names, gear: str) -> str:
     return gear
 
 
-def _looked_at(meshes: Sequence[_Mesh], called: str | None, tooth: int | None) -> tuple[_Mesh, str, int]:
+def _looked_at(meshes: Sequence[_Mesh], called: str | None, tooth: int | None) -> tuple[_Mesh, Side, int]:
     """Return the mesh, which of its gears, and the tooth that are looked at."""
-    gears = [(mesh, which) for mesh in meshes for which in ("pinion", "gear")]
-    teeth = [(mesh, which, index) for mesh, which in gears for index in damaged_teeth(mesh.state.damage, which)]
+    gears = [(mesh, side) for mesh in meshes for side in Side]
+    teeth = [(mesh, side, index) for mesh, side in gears for index in damaged_teeth(mesh.state.damage, side)]
     if called is None:
-        mesh, which = teeth[0][:2] if teeth and tooth is None else gears[0]
+        mesh, side = teeth[0][:2] if teeth and tooth is None else gears[0]
     else:
-        mesh, which = next(one for one in gears if one[0].words[one[1]] == called)
+        mesh, side = next(one for one in gears if one[0].words[one[1]] == called)
     if tooth is None:
-        tooth = next((index for one, gear, index in teeth if one is mesh and gear == which), 0)
-    count = mesh.state.pair.member(which).teeth
+        tooth = next((index for one, gear, index in teeth if one is mesh and gear == side), 0)
+    count = mesh.state.pair.member(side).teeth
     if not 0 <= tooth < count:
-        raise UsageError(f"--tooth {tooth}: {mesh.words[which]} has {count} teeth; allowed: 0 to {count - 1}")
-    return mesh, which, tooth
+        raise UsageError(f"--tooth {tooth}: {mesh.words[side]} has {count} teeth; allowed: 0 to {count - 1}")
+    return mesh, side, tooth
 
 
-def _engagement(mesh: _Mesh, gear: str, tooth: int) -> int:
+def _engagement(mesh: _Mesh, side: Side, tooth: int) -> int:
     """Return the number of the first engagement of a tooth that lies within the record."""
     pair, angle_rad = mesh.state.pair, mesh.angle_rad
-    pitch, teeth = 2.0 * pi / pair.pinion.teeth, pair.member(gear).teeth
+    pitch, teeth = 2.0 * pi / pair.pinion.teeth, pair.member(side).teeth
     first = ceil(float(angle_rad[0]) / pitch)
     number = first + (tooth - first) % teeth
     last = number * pitch + (pair.contact_end_m - pair.contact_start_m) / pair.pinion.base_radius_m
     if last > angle_rad[-1]:
         turns = (angle_rad[-1] - angle_rad[0]) / (2.0 * pi)
         raise UsageError(
-            f"{mesh.words[gear]} tooth {tooth} goes through mesh nowhere within the record, {turns:.2f} turns of the "
-            f"{mesh.words['pinion']}; allowed: another --tooth, or a longer record (--set duration_s=...)"
+            f"{mesh.words[side]} tooth {tooth} goes through mesh nowhere within the record, {turns:.2f} turns of the "
+            f"{mesh.words[Side.DRIVER]}; allowed: another --tooth, or a longer record (--set duration_s=...)"
         )
     return number
 
 
 def _solved(
-    law: ToothLaw, mesh: _Mesh, state_id: int, looked_at: tuple[str, int, int], found: Mapping[str, FloatArray]
+    law: ToothLaw, mesh: _Mesh, state_id: int, looked_at: tuple[Side, int, int], found: Mapping[str, FloatArray]
 ) -> FacePressure:
     gear, tooth, number = looked_at
     state, pair, angle_rad = mesh.state, mesh.state.pair, mesh.angle_rad
@@ -206,7 +206,7 @@ def _solved(
     lead = np.zeros(slices) if errors is None else errors.lead_m(slices)
     solver = table_solver(pair, state.options, options, lead - lead.min())
     shown = tuple(one for one in state.damage if has_extent(one))
-    pits = tuple(pits_of(shown, which, number % pair.member(which).teeth) for which in ("pinion", "gear"))
+    pits = tuple(pits_of(shown, side, number % pair.member(side).teeth) for side in Side)
     row = kind_row(pair, state.options, options, POSITIONS, (pits[0], pits[1]))
     entered = number * 2.0 * pi / pair.pinion.teeth
     roll = (row.position_m - pair.contact_start_m) / pair.pinion.base_radius_m
@@ -216,7 +216,7 @@ def _solved(
     tilt = np.interp(entered + roll, angle_rad, found.get("mesh_tilt_rad", np.zeros(angle_rad.size)))
     load, pressure, at_edge = _over_positions(solver, row, force, tilt)
     member = pair.member(gear)
-    along = row.position_m if gear == "pinion" else pair.line_of_action_m - row.position_m
+    along = row.position_m if gear == Side.DRIVER else pair.line_of_action_m - row.position_m
     view = flank_view(pair, str(state.labels["state"]), gear, tooth, pits_of(shown, gear, tooth))
     return FacePressure(
         view=replace(view, gear=mesh.words[gear]),

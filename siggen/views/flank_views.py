@@ -20,7 +20,7 @@ from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.damage_summary import flank_arc_m
 from siggen.gears.stiffness.sections import union_area_m2
 from siggen.keys.problems import nearest
-from siggen.names import ROLES
+from siggen.names import Side
 from siggen.planning.plan import PlannedRecord
 from siggen.record.damage_rows import damage_rows
 from siggen.specimen.mesh_teeth import MeshTeeth
@@ -96,9 +96,9 @@ def flank_views(specimen: Specimen, state: str | None = None, mesh: int = 0) -> 
     Source: outlines as in paper A, section 2.1; arcs R_b psi^2/2, derived.
     """
     teeth = MeshTeeth(specimen.law, specimen.meshes[mesh].teeth)
-    words = dict(zip(ROLES, (gear.word for gear in specimen.names.meshes[mesh].gears), strict=True))
+    words = dict(zip(Side, (gear.word for gear in specimen.names.meshes[mesh].gears), strict=True))
     return [
-        replace(view, gear=words[view.gear])
+        replace(view, gear=words[Side(view.gear)])
         for index in _state_ids(specimen, state)
         for view in _views(teeth.pair, specimen.states[index].name, on_teeth(teeth.damage(index)))
     ]
@@ -133,20 +133,20 @@ def _state_ids(specimen: Specimen, state: str | None) -> list[int]:
 
 
 def _views(pair: GearPair, state: str, damage: Damage) -> Iterator[FlankView]:
-    for which in ("pinion", "gear"):
-        for tooth in damaged_teeth(damage, which):
-            yield flank_view(pair, state, which, tooth, pits_of(damage, which, tooth))
+    for side in Side:
+        for tooth in damaged_teeth(damage, side):
+            yield flank_view(pair, state, side, tooth, pits_of(damage, side, tooth))
 
 
-def flank_view(pair: GearPair, state: str, which: str, tooth: int, damage: Damage) -> FlankView:
+def flank_view(pair: GearPair, state: str, side: Side, tooth: int, damage: Damage) -> FlankView:
     """Return the view of one flank with its damage, which may be none."""
-    gear = pair.member(which)
+    gear = pair.member(side)
     area_m2 = union_area_m2(gear, damage, pair.face_width_m)
-    zones = _flank_zones(pair, which)
+    zones = _flank_zones(pair, side)
     shown = [(one.outline, one.depth_m) for one in damage if one.outline is not None]
     return FlankView(
         state=state,
-        gear=which,
+        gear=side,
         tooth=tooth,
         face_width_mm=1e3 * pair.face_width_m,
         foot_mm=_arc_mm(gear, gear.involute_start_roll_rad),
@@ -161,11 +161,11 @@ def flank_view(pair: GearPair, state: str, which: str, tooth: int, damage: Damag
     )
 
 
-def _flank_zones(pair: GearPair, which: str) -> tuple[FlankZone, ...]:
-    gear, length = pair.member(which), pair.line_of_action_m
+def _flank_zones(pair: GearPair, side: Side) -> tuple[FlankZone, ...]:
+    gear, length = pair.member(side), pair.line_of_action_m
     found = []
     for zone in contact_zones(pair):
-        ends = (zone.start_m, zone.end_m) if which == "pinion" else (length - zone.end_m, length - zone.start_m)
+        ends = (zone.start_m, zone.end_m) if side == Side.DRIVER else (length - zone.end_m, length - zone.start_m)
         low, high = (_arc_mm(gear, end / gear.base_radius_m) for end in ends)
         found.append(FlankZone(low, high, zone.pairs))
     return tuple(sorted(found, key=lambda zone: zone.low_mm))

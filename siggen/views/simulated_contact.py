@@ -14,6 +14,7 @@ from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.tooth_damage import Damage, has_extent, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_tables import pair_kinds, table_of_pair
+from siggen.names import Side
 from siggen.specimen.static_mesh import StaticMesh
 
 HALVINGS = 50
@@ -82,12 +83,12 @@ def _land_share(pair: GearPair, damage: Damage, engagement: int, position_m: Flo
     """Return the share of the face (k,) on which the contact line lies in no damage of either tooth."""
     pinion, gear = (
         flank_chords(
-            pair.member(which),
-            pits_of(damage, which, engagement % pair.member(which).teeth),
+            pair.member(side),
+            pits_of(damage, side, engagement % pair.member(side).teeth),
             pair.face_width_m,
             LAND_SLICES,
         )
-        for which in ("pinion", "gear")
+        for side in Side
     )
     return np.asarray(1.0 - face_gaps(pair, pinion, gear, position_m).on_damage.mean(axis=1))
 

@@ -17,7 +17,7 @@ from siggen.gears.damage.tooth_damage import Damage, on_teeth, pits_of
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_compliance
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.names import ROLES
+from siggen.names import Side
 from siggen.record.specimen_state import static_state
 from siggen.specimen.friction import light_force_n
 from siggen.specimen.mesh_teeth import MeshTeeth
@@ -56,8 +56,8 @@ def damaged_engagements(pair: GearPair, damage: Damage) -> tuple[int, int]:
     Engagement n is pinion tooth n mod z1 with gear tooth n mod z2; damage of the pinion counts before that of the
     gear.
     """
-    teeth = sorted({p.tooth for p in damage if p.gear == "pinion"}) or sorted({p.tooth for p in damage})
-    count = pair.pinion.teeth if any(p.gear == "pinion" for p in damage) else pair.gear.teeth
+    teeth = sorted({p.tooth for p in damage if p.gear == Side.DRIVER}) or sorted({p.tooth for p in damage})
+    count = pair.pinion.teeth if any(p.gear == Side.DRIVER for p in damage) else pair.gear.teeth
     if not teeth:
         return 0, 0
     # Neighbours may run over the index 0: start behind the widest gap, so that they stay together.
@@ -196,12 +196,12 @@ def _parts(
     """
     position = pair.engagement_start_m + pair.pinion.base_radius_m * angle
     inside = (angle >= 0.0) & (position >= pair.contact_start_m) & (position <= pair.contact_end_m)
-    on_pinion = pits_of(damage, "pinion", engagement % pair.pinion.teeth)
-    on_gear = pits_of(damage, "gear", engagement % pair.gear.teeth)
+    on_pinion = pits_of(damage, Side.DRIVER, engagement % pair.pinion.teeth)
+    on_gear = pits_of(damage, Side.DRIVEN, engagement % pair.gear.teeth)
     found = pair_compliance(pair, position[inside], options, on_pinion, on_gear, through_face=open_face)
     parts = {
-        f"{name}_{part}": getattr(getattr(found, role), part)
-        for role, name in zip(ROLES, gears, strict=True)
+        f"{name}_{part}": getattr(getattr(found, side), part)
+        for side, name in zip(Side, gears, strict=True)
         for part in TOOTH_PARTS
     }
     return {name: _spread(inside, values) for name, values in {**parts, "contact": found.contact}.items()}

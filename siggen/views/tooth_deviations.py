@@ -16,6 +16,7 @@ from siggen.gears.errors.gear_errors import profiles_m
 from siggen.gears.errors.helix import HELIX_POINTS
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.problems import nearest
+from siggen.names import Side
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +50,7 @@ def gear_charts(specimen: Specimen, state: str | None = None, mesh: int = 0) -> 
         raise UsageError("gears: received perfect ones; allowed: gears with errors, --set manufacture.accuracy_class=6")
     driver, driven = specimen.names.meshes[mesh].gears
     pair = teeth.pair
-    return _chart(pair, "pinion", errors.pinion, driver.word), _chart(pair, "gear", errors.gear, driven.word)
+    return _chart(pair, Side.DRIVER, errors.pinion, driver.word), _chart(pair, Side.DRIVEN, errors.gear, driven.word)
 
 
 def deviation_table(charts: tuple[GearChart, GearChart]) -> pa.Table:
@@ -63,10 +64,10 @@ def deviation_table(charts: tuple[GearChart, GearChart]) -> pa.Table:
     )
 
 
-def _chart(pair: GearPair, which: str, made: MadeGear, word: str) -> GearChart:
+def _chart(pair: GearPair, side: Side, made: MadeGear, word: str) -> GearChart:
     place = np.linspace(0.0, 1.0, HELIX_POINTS)
     helix = None if made.helix.straight else 1e6 * made.helix.missing_m(place)
-    return GearChart(word, made, 1e6 * profiles_m(pair, which, made.errors), helix)
+    return GearChart(word, made, 1e6 * profiles_m(pair, side, made.errors), helix)
 
 
 def _across(chart: GearChart) -> dict[str, float]:

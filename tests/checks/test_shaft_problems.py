@@ -17,7 +17,7 @@ from siggen.errors import ConfigError
 from siggen.gearbox.draw import draw_operating_point, draw_specimen
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.gearbox.specimen import Specimen
-from siggen.names import ROLES
+from siggen.names import Side
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.motion import specimen_motion
 from tests.config.minimal import minimal
@@ -119,7 +119,7 @@ def test_soft_shafts_are_refused_though_some_gearboxes_have_their_gear_in_the_mi
 
 def drawn_tilt_rad(specimen: Specimen, torque_nm: float) -> float:
     train, rotors = specimen.train, (specimen.train.first.pinion, specimen.train.first.gear)
-    each = zip(train.bending, rotors, ROLES, strict=True)
+    each = zip(train.bending, rotors, Side, strict=True)
     return sum(static_tilt_rad(shaft, rotor.bearing, specimen.pair, role, torque_nm) for shaft, rotor, role in each)
 
 

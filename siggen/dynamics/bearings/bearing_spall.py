@@ -21,6 +21,7 @@ from siggen.arrays import FloatArray
 from siggen.dynamics.bearings.ball_bearing import BallBearing
 from siggen.gears.damage.part import NO_GEAR, NO_TOOTH, Part, Refusal
 from siggen.gears.damage.sham import SHAM
+from siggen.names import Side
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,9 +50,9 @@ class RollingSpall:
     kind: str = "bearing_spall"
 
     @property
-    def shaft(self) -> str:
-        """The shaft in the bearing: 'pinion' or 'gear'."""
-        return self.place.partition("_")[0]
+    def shaft(self) -> Side:
+        """The shaft in the bearing, of the first mesh's gears."""
+        return Side(self.place.partition("_")[0])
 
     @property
     def largest_length_m(self) -> float:

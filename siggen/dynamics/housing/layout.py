@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from siggen.dynamics.housing.box import Bolt, Box, Material, Rib, Seat, Thicknesses
+from siggen.names import Side
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +61,7 @@ def layout(contents: Contents, proportions: Proportions, material: Material) -> 
     places = (first, first + contents.centre_distance_m)
     seats = {
         name: _seat(x, level, outer, (length, height), p)
-        for name, x, outer in zip(("gear", "pinion"), places, contents.bearing_outer_m, strict=True)
+        for name, x, outer in zip((Side.DRIVEN.value, Side.DRIVER.value), places, contents.bearing_outer_m, strict=True)
     }
     shear, axial = p.bolt_n_per_m
     patch = min(WALLS_OF_PATCH * wall, 0.25 * width)

@@ -33,6 +33,7 @@ from siggen.dynamics.mesh.pair_columns import (
     SLIDING,
     STIFFNESS,
 )
+from siggen.names import Side
 
 MOMENTS = ("friction_moment_{0}_nm", "friction_moment_{1}_nm")
 """Of the driver and the driven gear."""
@@ -69,7 +70,7 @@ class PairContact:
 
 
 def pair_internal_names(
-    slots: int, contact: PairContact | None, gears: Sequence[str] = ("pinion", "gear")
+    slots: int, contact: PairContact | None, gears: Sequence[str] = (Side.DRIVER, Side.DRIVEN)
 ) -> tuple[str, ...]:
     """Return the names of `pair_internals`; pair n of an engagement has the number n mod slots."""
     single = (*PER_PAIR, *_of_contact(contact))

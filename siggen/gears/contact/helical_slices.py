@@ -20,6 +20,7 @@ from siggen.gears.stiffness.body_coupling import ring_torsion
 from siggen.gears.stiffness.compliance import axial_part, tooth_compliance
 from siggen.gears.stiffness.mesh_stiffness import rolls_at
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.names import Side
 
 POINTS = 2049
 """Of curves over the path that slices are interpolated in."""
@@ -44,7 +45,7 @@ def helical_missing_m(pair: GearPair, place_m: FloatArray, relief: TipRelief | N
         np.linspace(end, end + reach, POINTS // 4)[1:],
     )
     along = np.concatenate(parts)
-    curve = sum(missing_at_m(pair, which, relief, along) for which in ("pinion", "gear"))
+    curve = sum(missing_at_m(pair, side, relief, along) for side in Side)
     beyond = np.abs(place_m - np.clip(place_m, along[0], along[-1]))
     return np.asarray(np.interp(place_m, along, curve) + beyond)
 
@@ -57,12 +58,12 @@ def helical_rest(pair: GearPair, place_m: FloatArray, options: StiffnessOptions)
     along = np.linspace(pair.contact_start_m, pair.contact_end_m, POINTS)
     place, own, rigid = _on_path(pair, place_m), [], np.zeros(len(place_m))
     middle = carrying_middle_m(pair, 0.5 * (place_m[:, 0] + place_m[:, -1]))
-    for which, rolls in zip(("pinion", "gear"), rolls_at(pair, along), strict=True):
-        body = axial_part(pair, which, rolls, options)
+    for side, rolls in zip(Side, rolls_at(pair, along), strict=True):
+        body = axial_part(pair, side, rolls, options)
         if options.foundation != "none":
-            twist = ring_torsion(pair.member(which), pair.poisson_ratio) / (pair.youngs_modulus_pa * pair.face_width_m)
+            twist = ring_torsion(pair.member(side), pair.poisson_ratio) / (pair.youngs_modulus_pa * pair.face_width_m)
             body = body + twist
-        bends = np.maximum(tooth_compliance(pair, which, rolls, options).total - body, 0.0)
+        bends = np.maximum(tooth_compliance(pair, side, rolls, options).total - body, 0.0)
         own.append(np.interp(place, along, bends))
         rigid += np.interp(middle, along, body)
     sound = np.stack([one.min(axis=1) for one in own])

@@ -24,6 +24,7 @@ from siggen.gears.geometry.helical import carrying_middle_m, slice_radii_m, slic
 from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.mesh_stiffness import rolls_at
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.names import Side
 
 FELT_HALF_WIDTHS = 4.0
 """Gaps farther from the contact than this many Hertz half widths are not felt."""
@@ -67,7 +68,7 @@ class KindRow(NamedTuple):
 
 def pits_of_kind(damage: Damage, kind: tuple[int, int]) -> tuple[Damage, Damage]:
     """Return the damage of pinion and gear tooth of a kind of pair."""
-    return pits_of(damage, "pinion", kind[0]), pits_of(damage, "gear", kind[1])
+    return pits_of(damage, Side.DRIVER, kind[0]), pits_of(damage, Side.DRIVEN, kind[1])
 
 
 def kind_row(
@@ -82,16 +83,16 @@ def kind_row(
     if pair.helix_rad != 0.0:
         return _helical_row(pair, stiffness, options, points, pits, healthy)
     position = np.linspace(pair.contact_start_m, pair.contact_end_m, points)
-    rolls, flanks = rolls_at(pair, position), ("pinion", "gear")
+    rolls, flanks = rolls_at(pair, position), (Side.DRIVER, Side.DRIVEN)
     slices = face_slices(pair, options)
     chords = [
-        flank_chords(pair.member(which), of_tooth, pair.face_width_m, slices)
-        for which, of_tooth in zip(flanks, pits, strict=True)
+        flank_chords(pair.member(side), of_tooth, pair.face_width_m, slices)
+        for side, of_tooth in zip(flanks, pits, strict=True)
     ]
     # What shows on no flank acts through the tooth alone; what is gone through it leaves a narrower one.
     notches = [[d for d in of_tooth if not goes_through(d)] for of_tooth in pits]
     acting = [tuple(d for d in of_tooth if options.section_loss or d.outline is None) for of_tooth in notches]
-    standing = [standing_share(pair, which, of_tooth) for which, of_tooth in zip(flanks, pits, strict=True)]
+    standing = [standing_share(pair, side, of_tooth) for side, of_tooth in zip(flanks, pits, strict=True)]
     if healthy is not None and not any(acting) and min(standing) == 1.0:
         rest = healthy.rest
     else:
@@ -112,8 +113,8 @@ def _rough(pair: GearPair, pits: tuple[Damage, Damage], place_m: FloatArray) -> 
         return None
     slices = place_m.shape[1]
     pinion, gear = (
-        rough_land(pair.member(which), of_tooth, pair.face_width_m, slices)
-        for which, of_tooth in zip(("pinion", "gear"), pits, strict=True)
+        rough_land(pair.member(side), of_tooth, pair.face_width_m, slices)
+        for side, of_tooth in zip(Side, pits, strict=True)
     )
     return rough_shares(pair, pinion, gear, place_m)
 
@@ -137,8 +138,8 @@ def _helical_row(
     position, slices = np.linspace(pair.engagement_start_m, pair.engagement_end_m, points), face_slices(pair, options)
     place = position[:, np.newaxis] + slice_shifts_m(pair, slices)
     chords = [
-        flank_chords(pair.member(which), of_tooth, pair.face_width_m, slices)
-        for which, of_tooth in zip(("pinion", "gear"), pits, strict=True)
+        flank_chords(pair.member(side), of_tooth, pair.face_width_m, slices)
+        for side, of_tooth in zip(Side, pits, strict=True)
     ]
     gaps, edge_radius = helical_gaps(pair, place, chords[0], chords[1]), _edge_radius(chords, options)
     rough = _rough(pair, pits, place)
@@ -160,9 +161,9 @@ def _rest(
 ) -> PairRest:
     """Return the rest of both teeth (points,): evenly what damage does over the whole face, uneven what it does not."""
     teeth, added = [], np.zeros((2, rolls[0].size, slices))
-    for i, (which, roll, damage) in enumerate(zip(("pinion", "gear"), rolls, acting, strict=True)):
+    for i, (side, roll, damage) in enumerate(zip(Side, rolls, acting, strict=True)):
         uneven = tuple(d for d in damage if acts_unevenly(d))
-        teeth.append(tooth_compliance(pair, which, roll, stiffness, (d for d in damage if d not in uneven)))
+        teeth.append(tooth_compliance(pair, side, roll, stiffness, (d for d in damage if d not in uneven)))
         for one in uneven:
             added[i] += one.slice_compliance_m_per_n(pair, roll, teeth[i].total, slices)
     return pair_rest(pair, (teeth[0], teeth[1]), stiffness, standing, added if added.any() else None)

@@ -18,6 +18,7 @@ from siggen.gears.contact.table_options import half_width, reference_force_n
 from siggen.gears.contact.tooth_kernel import ToothKernel, tooth_kernel, unit_tooth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.hertz import centre_line_depth
+from siggen.names import Side
 
 
 class FaceOptions(NamedTuple):
@@ -81,9 +82,9 @@ def pair_faces(
         raise ValueError(f"lead_m: received shape {leads.shape}; allowed: ({count},), one for each slice")
     cell = pair.face_width_m / count
     face = cell * (np.arange(count) + 0.5) - 0.5 * pair.face_width_m
-    rolls = {"pinion": position_m / pair.pinion.base_radius_m}
-    rolls["gear"] = (pair.line_of_action_m - position_m) / pair.gear.signed_base_radius_m
-    first, second = (centre_line_depth(pair, which, roll) for which, roll in rolls.items())
+    rolls = {Side.DRIVER: position_m / pair.pinion.base_radius_m}
+    rolls[Side.DRIVEN] = (pair.line_of_action_m - position_m) / pair.gear.signed_base_radius_m
+    first, second = (centre_line_depth(pair, side, roll) for side, roll in rolls.items())
     depth = np.sqrt(first * second)
     radius = position_m * (pair.line_of_action_m - position_m) / pair.line_of_action_m
     kappa = contact_kappa(pair)
@@ -138,10 +139,12 @@ def _typical_depth(pair: GearPair) -> float:
     """Return Weber and Banaschek's depth in the middle of the path [m]."""
     middle = 0.5 * (pair.contact_start_m + pair.contact_end_m)
     rolls = {
-        "pinion": middle / pair.pinion.base_radius_m,
-        "gear": (pair.line_of_action_m - middle) / pair.gear.signed_base_radius_m,
+        Side.DRIVER: middle / pair.pinion.base_radius_m,
+        Side.DRIVEN: (pair.line_of_action_m - middle) / pair.gear.signed_base_radius_m,
     }
-    return float(np.sqrt(np.prod([centre_line_depth(pair, which, np.array([roll])) for which, roll in rolls.items()])))
+    return float(
+        np.sqrt(np.prod([float(centre_line_depth(pair, side, np.array([roll]))[0]) for side, roll in rolls.items()]))
+    )
 
 
 def carrying_length(

@@ -25,6 +25,7 @@ from siggen.gears.stiffness.compliance import tooth_compliance
 from siggen.gears.stiffness.hertz import centre_line_depth
 from siggen.gears.stiffness.mesh_stiffness import rolls_at
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.names import Side
 
 FORCE, SLOPE, CARRYING, ROUGH, ACROSS, ACROSS_SLOPE, ENERGY = range(7)
 """Values of the curves: force [N], its slope [N/m], carrying share of the face, share of the load on rough land.
@@ -70,9 +71,9 @@ def approach_under_m(pair: GearPair, stiffness: StiffnessOptions, force_n: float
     """Return the approach of one healthy pair under a force in the middle of the path [m]."""
     middle = np.array([0.5 * (pair.contact_start_m + pair.contact_end_m)])
     rolls = rolls_at(pair, middle)
-    members = tuple(zip(("pinion", "gear"), rolls, strict=True))
-    depth = float(np.sqrt(np.prod([centre_line_depth(pair, which, roll) for which, roll in members])))
-    rest = sum(float(tooth_compliance(pair, which, roll, stiffness).total[0]) for which, roll in members)
+    members = tuple(zip(Side, rolls, strict=True))
+    depth = float(np.sqrt(np.prod([centre_line_depth(pair, side, roll) for side, roll in members])))
+    rest = sum(float(tooth_compliance(pair, side, roll, stiffness).total[0]) for side, roll in members)
     width = float(half_width(pair, middle, force_n)[0])
     contact = contact_kappa(pair) * force_n / pair.face_width_m * (np.log(2.0 * depth / width) + 0.5)
     return float(force_n * rest + contact)

@@ -28,6 +28,7 @@ from siggen.gears.geometry.corner_contact import touching_gap_m
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.names import Side
 
 MARGIN_PITCHES = 0.05
 """Beyond the place where corners meet without load: a loaded mesh reaches further."""
@@ -43,15 +44,15 @@ class WholeChip:
 
     Parameters
     ----------
-    gear : str
-        'pinion' or 'gear'.
+    gear : Side
+        Its gear.
     tooth : int
         Tooth index, from 0.
     height_m : float
         What is lost from the tip down, along the radius [m]; infinite for a tooth that is gone.
     """
 
-    gear: str
+    gear: Side
     tooth: int
     height_m: float
     kind: str = "chip"
@@ -132,14 +133,14 @@ def tooth_height_m(gear: SpurGear) -> float:
     return gear.tip_radius_m - gear.root_radius_m
 
 
-def keeps_contact(pair: GearPair, which: str, height_m: float) -> bool:
+def keeps_contact(pair: GearPair, side: Side, height_m: float) -> bool:
     """Return whether a tooth without its tip meets its mate anywhere on the path of contact."""
-    roll = left_roll_rad(pair.member(which), height_m)
-    return roll is not None and roll > pair.active_flank[0 if which == "pinion" else 1][0]
+    roll = left_roll_rad(pair.member(side), height_m)
+    return roll is not None and roll > pair.active_flank[0 if side == Side.DRIVER else 1][0]
 
 
 @lru_cache(maxsize=64)
-def corner_reach_pitches(pair: GearPair, which: str, height_m: float) -> float:
+def corner_reach_pitches(pair: GearPair, side: Side, height_m: float) -> float:
     """Return how far beside the path of contact corners carry where a tooth has lost its tip [base pitches].
 
     Without load the flanks touch where least is missing; the place beside the path that lies farthest out, and a
@@ -147,9 +148,9 @@ def corner_reach_pitches(pair: GearPair, which: str, height_m: float) -> float:
     """
     pitch, start, end = pair.base_pitch_m, pair.contact_start_m, pair.contact_end_m
     place = np.linspace(start - pitch, end + pitch, PLACES)
-    chipped = WholeChip(which, 0, height_m)
+    chipped = WholeChip(side, 0, height_m)
     around = np.stack([place + pitch, place, place - pitch])
-    gaps = np.stack([touching_gap_m(pair, "pinion", s) + touching_gap_m(pair, "gear", s) for s in around])
+    gaps = np.stack([touching_gap_m(pair, Side.DRIVER, s) + touching_gap_m(pair, Side.DRIVEN, s) for s in around])
     gaps[1] += chipped.missing_m(pair, place)
     touching = np.argmin(gaps, axis=0)
     at = np.take_along_axis(around, touching[None], axis=0)[0]

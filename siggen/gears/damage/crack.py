@@ -24,6 +24,7 @@ from siggen.gears.damage.sham import Sham
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.root_chord import root_chord
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.names import Side
 
 SLACK = 1e-9
 """Of a share or an angle that was divided and multiplied again."""
@@ -39,8 +40,8 @@ class RootCrack:
 
     Attributes
     ----------
-    gear : str
-        'pinion' or 'gear'.
+    gear : Side
+        Its gear.
     tooth : int
         Index, from 0.
     depth_m : float
@@ -52,7 +53,7 @@ class RootCrack:
         everywhere [m].
     """
 
-    gear: str
+    gear: Side
     tooth: int
     depth_m: float
     angle_rad: float
@@ -129,9 +130,6 @@ class RootCrack:
 
     def place_problems(self, pair: GearPair) -> Iterator[Refusal]:
         """Yield a tooth that there is not, a root without the chord, a crack too deep for it or into the bore."""
-        if self.gear not in ("pinion", "gear"):
-            yield Refusal("gear", f"gear {self.gear!r}", "'pinion', 'gear'")
-            return
         gear = pair.member(self.gear)
         if not 0 <= self.tooth < gear.teeth:
             yield Refusal("tooth", f"tooth {self.tooth!r}", f"0 to {gear.teeth - 1}")

@@ -15,6 +15,7 @@ from siggen.gears.damage.row_columns import COLUMNS, FACE
 from siggen.gears.damage.tooth_damage import Damage, DamageProblem, ToothDamage, damaged_teeth, pits_of
 from siggen.gears.damage.whole_loss import takes_whole_contact
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.names import Side
 
 
 def pit_rows(pits: Iterable[ToothDamage]) -> FloatArray:
@@ -67,42 +68,38 @@ def _located(index: int, damage: ToothDamage, refusals: Iterable[Refusal]) -> It
 
 
 def _contact_problems(pair: GearPair, damage: Damage) -> Iterator[DamageProblem]:
-    for which, tooth, mate in lost_contacts(pair, damage):
-        index, pit = next((i, pit) for i, pit in enumerate(damage) if pit.gear == which and pit.tooth == tooth)
+    for side, tooth, mate in lost_contacts(pair, damage):
+        index, pit = next((i, pit) for i, pit in enumerate(damage) if pit.gear == side and pit.tooth == tooth)
         together = "" if mate is None else f" together with gear tooth {mate}"
-        received = (
-            f"{_kinds(damage, which, tooth)} of {which} tooth {tooth}{together} that take the whole contact length"
-        )
+        received = f"{_kinds(damage, side, tooth)} of {side} tooth {tooth}{together} that take the whole contact length"
         allowed = f"a loss below the face width {pair.face_width_m:.6g} m everywhere"
         yield DamageProblem(index, received, allowed, pit.kind, "contact")
 
 
-def _kinds(damage: Damage, which: str, tooth: int) -> str:
-    kinds = sorted({pit.kind for pit in pits_of(damage, which, tooth)})
+def _kinds(damage: Damage, side: Side, tooth: int) -> str:
+    kinds = sorted({pit.kind for pit in pits_of(damage, side, tooth)})
     return " and ".join(f"{kind}s" for kind in kinds)
 
 
-def lost_contacts(pair: GearPair, damage: Damage) -> Iterator[tuple[str, int, int | None]]:
+def lost_contacts(pair: GearPair, damage: Damage) -> Iterator[tuple[Side, int, int | None]]:
     """Yield (gear, tooth, None) of flanks without contact length somewhere on the path of contact.
 
-    Then ('pinion', tooth, gear tooth) of meeting flanks that only together leave none.
+    Then (the driver, tooth, tooth of the gear) of meeting flanks that only together leave none.
     """
     rows = {
-        (which, tooth): pit_rows(pits_of(damage, which, tooth))
-        for which in ("pinion", "gear")
-        for tooth in damaged_teeth(damage, which)
+        (side, tooth): pit_rows(pits_of(damage, side, tooth)) for side in Side for tooth in damaged_teeth(damage, side)
     }
     none = np.empty((0, COLUMNS))
     whole: set[tuple[str, int]] = set()
-    for (which, tooth), own in rows.items():
-        first, second = (own, none) if which == "pinion" else (none, own)
+    for (side, tooth), own in rows.items():
+        first, second = (own, none) if side == Side.DRIVER else (none, own)
         if takes_whole_contact(pair, first, second):
-            whole.add((which, tooth))
-            yield which, tooth, None
+            whole.add((side, tooth))
+            yield side, tooth, None
     shared = gcd(pair.pinion.teeth, pair.gear.teeth)
-    for i in damaged_teeth(damage, "pinion"):
-        for j in damaged_teeth(damage, "gear"):
-            if (i - j) % shared or ("pinion", i) in whole or ("gear", j) in whole:
+    for i in damaged_teeth(damage, Side.DRIVER):
+        for j in damaged_teeth(damage, Side.DRIVEN):
+            if (i - j) % shared or (Side.DRIVER, i) in whole or (Side.DRIVEN, j) in whole:
                 continue
-            if takes_whole_contact(pair, rows["pinion", i], rows["gear", j]):
-                yield "pinion", i, j
+            if takes_whole_contact(pair, rows[Side.DRIVER, i], rows[Side.DRIVEN, j]):
+                yield Side.DRIVER, i, j

@@ -16,6 +16,7 @@ from siggen.gears.damage.part import NO_TOOTH, Part
 from siggen.gears.damage.tooth_damage import Damage, on_teeth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES, MissingMaterial, MissingTables
+from siggen.names import Side
 
 
 class FlankLoss(Part, Protocol):
@@ -76,8 +77,8 @@ def with_losses(missing: MissingMaterial, pair: GearPair, losses: Losses) -> Mis
     position = np.linspace(missing.start_m, missing.end_m, missing.pinion.profile_m.shape[1])
     return replace(
         missing,
-        pinion=_without(missing.pinion, pair, position, [one for one in losses if one.gear == "pinion"]),
-        gear=_without(missing.gear, pair, position, [one for one in losses if one.gear == "gear"]),
+        pinion=_without(missing.pinion, pair, position, [one for one in losses if one.gear == Side.DRIVER]),
+        gear=_without(missing.gear, pair, position, [one for one in losses if one.gear == Side.DRIVEN]),
     )
 
 
@@ -93,8 +94,8 @@ def on_back_flanks(missing: MissingMaterial, pair: GearPair, losses: Losses) -> 
     # Tables keep the gear that they belong to, parts have the role that it plays.
     return replace(
         missing,
-        pinion=_without(missing.pinion, pair, position, [one for one in own if one.gear == "gear"]),
-        gear=_without(missing.gear, pair, position, [one for one in own if one.gear == "pinion"]),
+        pinion=_without(missing.pinion, pair, position, [one for one in own if one.gear == Side.DRIVEN]),
+        gear=_without(missing.gear, pair, position, [one for one in own if one.gear == Side.DRIVER]),
     )
 
 
@@ -103,9 +104,9 @@ def turned(part: SomePart, pair: GearPair) -> SomePart:
 
     The gear's tooth behind the one that a pair is numbered by is that whose back flank is in contact.
     """
-    if part.gear == "pinion":
-        return replace(part, gear="gear")  # type: ignore[type-var]
-    return replace(part, gear="pinion", tooth=(part.tooth - 1) % pair.pinion.teeth)  # type: ignore[type-var]
+    if part.gear == Side.DRIVER:
+        return replace(part, gear=Side.DRIVEN)  # type: ignore[type-var]
+    return replace(part, gear=Side.DRIVER, tooth=(part.tooth - 1) % pair.pinion.teeth)  # type: ignore[type-var]
 
 
 def _without(teeth: MissingTables, pair: GearPair, position_m: FloatArray, losses: list[FlankLoss]) -> MissingTables:

@@ -13,6 +13,7 @@ from siggen.gears.damage.outlines import Outline
 from siggen.gears.geometry.contact_zones import contact_zones
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.names import Side
 
 READINGS = ("axial", "radial", "arc")
 
@@ -24,15 +25,15 @@ def flank_heights(gear: SpurGear) -> tuple[float, float]:
     return float(gear.height_m(low)), float(gear.height_m(high))
 
 
-def initiation_height_m(pair: GearPair, which: str) -> float:
+def initiation_height_m(pair: GearPair, side: Side) -> float:
     """Return the height x half way along the flank from the lowest point of the zone around the pitch point to it [m].
 
     With a contact ratio below 2 that zone is the one of single contact: the full load meets negative sliding. Derived.
     """
-    gear, line = pair.member(which), pair.line_of_action_m
+    gear, line = pair.member(side), pair.line_of_action_m
     pitch = pair.pinion.base_radius_m * tan(pair.working_pressure_angle_rad)
     zone = next(z for z in contact_zones(pair) if z.start_m <= pitch <= z.end_m)
-    travels = (zone.start_m, pitch) if which == "pinion" else (line - zone.end_m, line - pitch)
+    travels = (zone.start_m, pitch) if side == Side.DRIVER else (line - zone.end_m, line - pitch)
     arc_m = sum(travel**2 for travel in travels) / (4.0 * gear.base_radius_m)
     return axial_height(gear, arc_m, "arc")
 

@@ -24,6 +24,7 @@ from siggen.gears.damage.on_flank import OnFlank, floor_problems
 from siggen.gears.damage.outlines import Polygon
 from siggen.gears.damage.part import Part, Refusal
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.names import Side
 
 STRIPS = 64
 """Strips of a whole face; their ends stay where they are while a spall grows."""
@@ -64,8 +65,8 @@ class IrregularSpall(OnFlank):
 
     Parameters
     ----------
-    gear : str
-        'pinion' or 'gear'.
+    gear : Side
+        Its gear.
     tooth : int
         Tooth index, from 0.
     stations_m : tuple of (face, lower height, upper height)
@@ -81,7 +82,7 @@ class IrregularSpall(OnFlank):
         deeper one counts.
     """
 
-    gear: str
+    gear: Side
     tooth: int
     stations_m: tuple[Station, ...]
     strip_depths_m: tuple[float, ...]
@@ -175,7 +176,7 @@ def stations_across(
 
 
 def grown_spall(
-    gear: str,
+    gear: Side,
     tooth: int,
     face_m: FloatArray,
     edges_m: tuple[FloatArray, FloatArray],

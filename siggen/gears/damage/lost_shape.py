@@ -21,6 +21,7 @@ from siggen.gears.damage.sham import Sham
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.names import Side
 
 Shape = Callable[[FloatArray, FloatArray], FloatArray]
 """Heights above the base circle along the tooth's axis and places across the face (n,) -> depths (n,) [m]."""
@@ -36,14 +37,14 @@ class LostShape:
 
     Attributes
     ----------
-    gear : str
-        'pinion' or 'gear'.
+    gear : Side
+        Its gear.
     tooth : int
     shape : callable
     kind : str
     """
 
-    gear: str
+    gear: Side
     tooth: int
     shape: Shape
     kind: str
@@ -65,7 +66,7 @@ class LostShape:
         for i in np.flatnonzero(depths.any(axis=0)):
             place = np.clip(place_m[:, i, np.newaxis], pair.contact_start_m, pair.contact_end_m)
             radius = place * (pair.line_of_action_m - place) / pair.line_of_action_m
-            along = place if self.gear == "pinion" else pair.line_of_action_m - place
+            along = place if self.gear == Side.DRIVER else pair.line_of_action_m - place
             arc = 0.5 * along**2 / gear.base_radius_m
             beside = ((arcs - arc) ** 2 / (2.0 * radius) + depths[:, i]).min(axis=1)
             found[:, i] = np.minimum(beside, np.interp(arc[:, 0], arcs, depths[:, i]))

@@ -20,6 +20,7 @@ from siggen.gears.damage.sham import Sham
 from siggen.gears.damage.tooth_damage import ToothDamage, acts_on_tooth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.names import Side
 
 FLOORS = ("flat", "dish")
 
@@ -28,7 +29,7 @@ class Outlined(Protocol):
     """What the answers below need to know."""
 
     @property
-    def gear(self) -> str: ...  # noqa: D102 - see ToothDamage
+    def gear(self) -> Side: ...  # noqa: D102 - see ToothDamage
 
     @property
     def tooth(self) -> int: ...  # noqa: D102
@@ -95,9 +96,6 @@ class OnFlank:
 
         The depth must stay below it over the whole height (of a dish too: the rule is on the safe side there).
         """
-        if self.gear not in ("pinion", "gear"):
-            yield Refusal("gear", f"gear {self.gear!r}", "'pinion', 'gear'")
-            return
         gear, outline = pair.member(self.gear), self.outline
         if not 0 <= self.tooth < gear.teeth:
             yield Refusal("tooth", f"tooth {self.tooth!r}", f"0 to {gear.teeth - 1}")

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple, Protocol, TypeAlias
 
+from siggen.names import Side
+
 NO_GEAR, NO_TOOTH = "none", -1
 """Gear and tooth of a part that belongs to no gear, or to all teeth of one."""
 
@@ -26,8 +28,8 @@ class Part(Protocol):
 
     Attributes
     ----------
-    gear : str
-        'pinion' or 'gear'; `NO_GEAR` for what is on no gear.
+    gear : Side
+        `NO_GEAR` for what is on no gear.
     tooth : int
         Index, from 0; `NO_TOOTH` for all teeth of the gear, or none.
     kind : str
@@ -62,6 +64,6 @@ class Part(Protocol):
 Parts: TypeAlias = tuple[Part, ...]
 
 
-def teeth_of(parts: Iterable[Part], which: str) -> list[int]:
-    """Return the single teeth of 'pinion' or 'gear' that have a part, ascending."""
-    return sorted({one.tooth for one in parts if one.gear == which and one.tooth != NO_TOOTH})
+def teeth_of(parts: Iterable[Part], side: Side) -> list[int]:
+    """Return the single teeth of a gear that have a part, ascending."""
+    return sorted({one.tooth for one in parts if one.gear == side and one.tooth != NO_TOOTH})

@@ -30,6 +30,7 @@ from siggen.gears.damage.tooth_damage import ToothDamage, acts_on_tooth, goes_th
 from siggen.gears.damage.union import lengths_covered
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.names import Side
 
 BEYOND_TIP_MODULES = 0.1
 """How far above the tip outlines reach: there is no land behind a chip."""
@@ -41,8 +42,8 @@ class PartChip:
 
     Parameters
     ----------
-    gear : str
-        'pinion' or 'gear'.
+    gear : Side
+        Its gear.
     tooth : int
         Tooth index, from 0.
     height_m : float
@@ -55,7 +56,7 @@ class PartChip:
         Whether the tooth is gone down to its root there, and whether that is all of the face.
     """
 
-    gear: str
+    gear: Side
     tooth: int
     height_m: float
     width_m: float
@@ -121,9 +122,6 @@ class PartChip:
 
     def place_problems(self, pair: GearPair) -> Iterator[Refusal]:
         """Yield a tooth that there is not, a height beyond the tooth, a width beyond the face."""
-        if self.gear not in ("pinion", "gear"):
-            yield Refusal("gear", f"gear {self.gear!r}", "'pinion', 'gear'")
-            return
         gear = pair.member(self.gear)
         if not 0 <= self.tooth < gear.teeth:
             yield Refusal("tooth", f"tooth {self.tooth!r}", f"0 to {gear.teeth - 1}")
@@ -171,10 +169,10 @@ def lost_outline(gear: SpurGear, height_m: float, width_m: float) -> Polygon:
     return Polygon(((line, 0.0), (line, width_m), (above, width_m), (above, 0.0)), "rectangle")
 
 
-def standing_share(pair: GearPair, which: str, damage: Iterable[ToothDamage]) -> float:
+def standing_share(pair: GearPair, side: Side, damage: Iterable[ToothDamage]) -> float:
     """Return the share of the face over which a tooth still stands on its root, beside what is gone through it."""
     rows = pit_rows(one for one in damage if goes_through(one))
-    start = np.array([flank_heights(pair.member(which))[0]])
+    start = np.array([flank_heights(pair.member(side))[0]])
     gone = lengths_covered(start, rows, start, np.empty((0, COLUMNS)), pair.face_width_m)
     return 1.0 - float(gone[0]) / pair.face_width_m
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from siggen.gears.damage.on_flank import OnFlank
 from siggen.gears.damage.outlines import Ellipse
 from siggen.gears.damage.part import Part
+from siggen.names import Side
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,8 +20,8 @@ class FlankPit(OnFlank):
 
     Parameters
     ----------
-    gear : str
-        'pinion' or 'gear'.
+    gear : Side
+        Its gear.
     tooth : int
         Tooth index, from 0.
     height_m : float
@@ -35,7 +36,7 @@ class FlankPit(OnFlank):
         'flat' or 'dish' (half ellipsoid).
     """
 
-    gear: str
+    gear: Side
     tooth: int
     height_m: float
     face_m: float

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from siggen.gears.damage.on_flank import FLOORS, OnFlank
 from siggen.gears.damage.outlines import Outline
+from siggen.names import Side
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,8 +15,8 @@ class FlankSpall(OnFlank):
 
     Parameters
     ----------
-    gear : str
-        'pinion' or 'gear'.
+    gear : Side
+        Its gear.
     tooth : int
         Tooth index, from 0.
     outline : Ellipse or Polygon
@@ -28,7 +29,7 @@ class FlankSpall(OnFlank):
         flank that rolls over it, such a floor is curved along the profile and straight across the face.
     """
 
-    gear: str
+    gear: Side
     tooth: int
     outline: Outline
     depth_m: float

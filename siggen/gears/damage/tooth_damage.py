@@ -16,6 +16,7 @@ from siggen.gears.damage.part import Part, Refusal
 from siggen.gears.damage.row_columns import THROUGH_M
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.names import Side
 
 
 class ToothDamage(Part, Protocol):
@@ -23,6 +24,8 @@ class ToothDamage(Part, Protocol):
 
     Attributes
     ----------
+    gear : Side
+        Which gear of its mesh has it.
     outline : Ellipse, Polygon or None
         On the plane of height and face, to draw and to measure it; None for a damage that shows on no flank.
     depth_m : float
@@ -30,7 +33,10 @@ class ToothDamage(Part, Protocol):
     """
 
     @property
-    def outline(self) -> Outline | None: ...  # noqa: D102 - see the class
+    def gear(self) -> Side: ...  # noqa: D102 - see the class
+
+    @property
+    def outline(self) -> Outline | None: ...  # noqa: D102
 
     @property
     def depth_m(self) -> float: ...  # noqa: D102
@@ -98,14 +104,14 @@ class DamageProblem:
         return f"{self.kind} {self.index}: received {self.received}; allowed: {self.allowed}"
 
 
-def pits_of(damage: Iterable[ToothDamage], which: str, tooth: int) -> Damage:
-    """Return the damage on one tooth of 'pinion' or 'gear'."""
-    return tuple(one for one in damage if one.gear == which and one.tooth == tooth)
+def pits_of(damage: Iterable[ToothDamage], side: Side, tooth: int) -> Damage:
+    """Return the damage on one tooth."""
+    return tuple(one for one in damage if one.gear == side and one.tooth == tooth)
 
 
-def damaged_teeth(damage: Iterable[ToothDamage], which: str) -> tuple[int, ...]:
-    """Return the damaged teeth of 'pinion' or 'gear', ascending."""
-    return tuple(sorted({one.tooth for one in damage if one.gear == which}))
+def damaged_teeth(damage: Iterable[ToothDamage], side: Side) -> tuple[int, ...]:
+    """Return the damaged teeth of a gear, ascending."""
+    return tuple(sorted({one.tooth for one in damage if one.gear == side}))
 
 
 def goes_through(damage: ToothDamage) -> bool:

@@ -24,6 +24,7 @@ from siggen.gears.damage.sham import SHAM
 from siggen.gears.damage.tooth_damage import Damage
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES
+from siggen.names import Side
 
 POINTS = 513
 """Of a worn profile from s_A to s_E: 30 µm of a usual path, where pairs change the depth has a step of this width."""
@@ -51,13 +52,13 @@ class WornFlanks:
 
     Parameters
     ----------
-    gear : str
-        'pinion' or 'gear'.
+    gear : Side
+        Its gear.
     depths_m : tuple of float
         Depth at `POINTS` even places from s_A to s_E; it stays at the ends' beyond them.
     """
 
-    gear: str
+    gear: Side
     depths_m: tuple[float, ...]
     tooth: int = NO_TOOTH
     kind: str = "wear"
@@ -104,7 +105,7 @@ class WornFlanks:
 
     def table_row(self) -> dict[str, object]:
         """Return gear, kind and depths; those along the profile from the root's end of the active flank to its tip."""
-        from_root = np.asarray(self.depths_m if self.gear == "pinion" else self.depths_m[::-1])
+        from_root = np.asarray(self.depths_m if self.gear == Side.DRIVER else self.depths_m[::-1])
         named = np.interp(np.linspace(0.0, 1.0, LABEL_POINTS), np.linspace(0.0, 1.0, from_root.size), from_root)
         return {
             "gear": self.gear,

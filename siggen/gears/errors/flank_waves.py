@@ -24,6 +24,7 @@ from siggen.arrays import ComplexArray, FloatArray
 from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial, MissingTables, nearest_place_m
+from siggen.names import Side
 
 ORDERS = np.arange(1, 31)
 """Cycles of the form over the active flank: down to L/30, where the profile filter of ISO 1328-1 ends."""
@@ -44,21 +45,21 @@ class FlankWaves:
 
 
 def missing_m(
-    pair: GearPair, which: str, waves: FlankWaves, position_m: FloatArray, half_width_m: FloatArray | float
+    pair: GearPair, side: Side, waves: FlankWaves, position_m: FloatArray, half_width_m: FloatArray | float
 ) -> FloatArray:
     """Return what waves take from every tooth (z, k) at positions s (k,), seen by a contact of half-width b (k,)."""
-    total = _of_table_m(pair, which, waves, position_m, half_width_m)
-    return _with_form(total, pair, which, waves, position_m, half_width_m)
+    total = _of_table_m(pair, side, waves, position_m, half_width_m)
+    return _with_form(total, pair, side, waves, position_m, half_width_m)
 
 
 def _of_table_m(
-    pair: GearPair, which: str, waves: FlankWaves, position_m: FloatArray, half_width_m: FloatArray | float
+    pair: GearPair, side: Side, waves: FlankWaves, position_m: FloatArray, half_width_m: FloatArray | float
 ) -> FloatArray:
     """Return what waves over all teeth take (z, k)."""
     from scipy.special import j0
 
-    gear, sense = pair.member(which), 1.0 if which == "pinion" else -1.0
-    roll, seen = _rolls(pair, which, position_m, half_width_m)
+    gear, sense = pair.member(side), 1.0 if side == Side.DRIVER else -1.0
+    roll, seen = _rolls(pair, side, position_m, half_width_m)
     tooth = sense * 2.0 * np.pi * np.arange(gear.teeth) / gear.teeth
     total = np.zeros((gear.teeth, position_m.size))
     for n, amplitude, phase in zip(waves.waves, waves.amplitude_m, waves.phase_rad, strict=True):
@@ -69,7 +70,7 @@ def _of_table_m(
 def _with_form(
     total: FloatArray,
     pair: GearPair,
-    which: str,
+    side: Side,
     waves: FlankWaves,
     position_m: FloatArray,
     half_width_m: FloatArray | float,
@@ -77,8 +78,8 @@ def _with_form(
     """Return the form (z, k) of single teeth added to a total."""
     from scipy.special import j0
 
-    roll, seen = _rolls(pair, which, position_m, half_width_m)
-    per_cycle = 2.0 * np.pi * pair.member(which).base_radius_m / (pair.contact_end_m - pair.contact_start_m)
+    roll, seen = _rolls(pair, side, position_m, half_width_m)
+    per_cycle = 2.0 * np.pi * pair.member(side).base_radius_m / (pair.contact_end_m - pair.contact_start_m)
     together = waves.common_m + waves.own_m
     for h, amplitudes in zip(ORDERS, together.T, strict=True):
         n = h * per_cycle
@@ -87,14 +88,14 @@ def _with_form(
 
 
 def _rolls(
-    pair: GearPair, which: str, position_m: FloatArray, half_width_m: FloatArray | float
+    pair: GearPair, side: Side, position_m: FloatArray, half_width_m: FloatArray | float
 ) -> tuple[FloatArray, FloatArray]:
     """Return roll angles (k,) [rad], and b over ρ (k,): κb per wave on the revolution.
 
     Tables of few teeth may begin below the base circle, where no flank is.
     """
-    gear = pair.member(which)
-    radius = position_m if which == "pinion" else pair.line_of_action_m - position_m
+    gear = pair.member(side)
+    radius = position_m if side == Side.DRIVER else pair.line_of_action_m - position_m
     radius = radius if gear.signed_base_radius_m > 0.0 else -radius
     seen = np.divide(half_width_m, radius, out=np.zeros_like(radius), where=radius > 0.0)
     return radius / gear.base_radius_m, seen
@@ -117,21 +118,23 @@ def with_waves(
     """
     position = np.linspace(missing.start_m, missing.end_m, missing.pinion.profile_m.shape[1])
 
-    def seen(which: str, waves: FlankWaves) -> FloatArray:
+    def seen(side: Side, waves: FlankWaves) -> FloatArray:
         def along(place: FloatArray) -> FloatArray:
             return half_width_m(pair, place, line_load_n_per_m)
 
         if shares is None:
-            return missing_m(pair, which, waves, position, along(position))
-        width, teeth = along(nearest_place_m(pair, position)), pair.member(which).teeth
+            return missing_m(pair, side, waves, position, along(position))
+        width, teeth = along(nearest_place_m(pair, position)), pair.member(side).teeth
 
         def form(place: FloatArray) -> FloatArray:
-            return _with_form(np.zeros((teeth, place.size)), pair, which, waves, place, along(place))
+            return _with_form(np.zeros((teeth, place.size)), pair, side, waves, place, along(place))
 
-        return _of_table_m(pair, which, waves, position, width) + shares.mean(position, form)
+        return _of_table_m(pair, side, waves, position, width) + shares.mean(position, form)
 
     return replace(
-        missing, pinion=_added(missing.pinion, seen("pinion", pinion)), gear=_added(missing.gear, seen("gear", gear))
+        missing,
+        pinion=_added(missing.pinion, seen(Side.DRIVER, pinion)),
+        gear=_added(missing.gear, seen(Side.DRIVEN, gear)),
     )
 
 

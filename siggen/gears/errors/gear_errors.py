@@ -21,6 +21,7 @@ from siggen.arrays import FloatArray
 from siggen.gears.errors.error_shapes import FLANK_POINTS, ErrorShapes, slopes, without_line
 from siggen.gears.errors.iso_1328 import FlankTolerances
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.names import Side
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,14 +72,14 @@ class FlankDeviations:
 
 
 def gear_errors(
-    pair: GearPair, which: str, shapes: ErrorShapes, limits: FlankTolerances, runout_share: float
+    pair: GearPair, side: Side, shapes: ErrorShapes, limits: FlankTolerances, runout_share: float
 ) -> GearErrors:
     """Return errors of these shapes that stay within the limits, and reach those that bind.
 
     Parameters
     ----------
     pair : GearPair
-    which : str, 'pinion' or 'gear'
+    side : Side
     shapes : ErrorShapes
     limits : FlankTolerances, largest deviations allowed, as a share of a class's tolerances
     runout_share : float
@@ -89,19 +90,19 @@ def gear_errors(
     ValueError
         If the runout share is not from 0 to 1, or the shapes are not those of this gear's number of teeth.
     """
-    teeth = pair.member(which).teeth
+    teeth = pair.member(side).teeth
     if not 0.0 <= runout_share <= 1.0:
         raise ValueError(f"runout_share: received {runout_share}; allowed: 0 to 1")
     if shapes.pitch.size != teeth:
-        raise ValueError(f"shapes: received those of {shapes.pitch.size} teeth; the {which} has {teeth}")
-    eccentricity = _eccentricity(pair, which, shapes, limits, runout_share)
+        raise ValueError(f"shapes: received those of {shapes.pitch.size} teeth; the {side} has {teeth}")
+    eccentricity = _eccentricity(pair, side, shapes, limits, runout_share)
     alone = GearErrors(eccentricity, shapes.phase_rad, *_nothing(teeth))
-    turned = deviations(pair, which, alone).cumulative_pitch_m
+    turned = deviations(pair, side, alone).cumulative_pitch_m
     pitch = shapes.pitch * min(
         _largest_factor(turned, shapes.pitch, lambda c: np.abs(_steps(c)).max(), limits.pitch_m),
         _largest_factor(turned, shapes.pitch, np.ptp, limits.cumulative_pitch_m),
     )
-    slope, form = _profile(eccentric_profiles_m(pair, which, alone), shapes, limits)
+    slope, form = _profile(eccentric_profiles_m(pair, side, alone), shapes, limits)
     return GearErrors(eccentricity, shapes.phase_rad, pitch, slope, form)
 
 
@@ -116,12 +117,12 @@ def off_axis(errors: GearErrors, eccentricity_m: float, phase_rad: float) -> Gea
     return replace(errors, eccentricity_m=float(abs(total)), phase_rad=float(np.angle(total)))
 
 
-def deviations(pair: GearPair, which: str, errors: GearErrors) -> FlankDeviations:
+def deviations(pair: GearPair, side: Side, errors: GearErrors) -> FlankDeviations:
     """Return what a measuring machine finds of a gear."""
-    cosine = float(np.cos(pair.member(which).pressure_angle_rad))
+    cosine = float(np.cos(pair.member(side).pressure_angle_rad))
     middle = 0.5 * (pair.contact_start_m + pair.contact_end_m)
-    cumulative = errors.pitch_m + eccentric_m(pair, which, errors, np.array([middle]))[:, 0] / cosine
-    profiles = profiles_m(pair, which, errors)
+    cumulative = errors.pitch_m + eccentric_m(pair, side, errors, np.array([middle]))[:, 0] / cosine
+    profiles = profiles_m(pair, side, errors)
     return FlankDeviations(
         cumulative_pitch_m=cumulative,
         pitch_m=_steps(cumulative),
@@ -132,32 +133,32 @@ def deviations(pair: GearPair, which: str, errors: GearErrors) -> FlankDeviation
     )
 
 
-def profiles_m(pair: GearPair, which: str, errors: GearErrors) -> FloatArray:
+def profiles_m(pair: GearPair, side: Side, errors: GearErrors) -> FloatArray:
     """Return what every tooth misses (z, FLANK_POINTS) from the root end to the tip, up to its place [m]."""
-    return eccentric_profiles_m(pair, which, errors) + _lines(errors.slope_m) + errors.form_m
+    return eccentric_profiles_m(pair, side, errors) + _lines(errors.slope_m) + errors.form_m
 
 
-def eccentric_m(pair: GearPair, which: str, errors: GearErrors, position_m: FloatArray) -> FloatArray:
+def eccentric_m(pair: GearPair, side: Side, errors: GearErrors, position_m: FloatArray) -> FloatArray:
     """Return what eccentricity takes from every tooth (z, k) at positions s (k,) of its pair [m]."""
-    gear = pair.member(which)
+    gear = pair.member(side)
     tooth = 2.0 * np.pi * np.arange(gear.teeth) / gear.teeth
     turned = (position_m - pair.contact_start_m) / gear.base_radius_m
     return np.asarray(errors.eccentricity_m * np.cos(tooth[:, None] + turned[None, :] + errors.phase_rad))
 
 
-def eccentric_profiles_m(pair: GearPair, which: str, errors: GearErrors) -> FloatArray:
+def eccentric_profiles_m(pair: GearPair, side: Side, errors: GearErrors) -> FloatArray:
     """Return the same (z, FLANK_POINTS) from the root end to the tip of the active flank."""
     ends = (pair.contact_start_m, pair.contact_end_m)
-    first, last = ends if which == "pinion" else ends[::-1]
-    return eccentric_m(pair, which, errors, np.linspace(first, last, FLANK_POINTS))
+    first, last = ends if side == Side.DRIVER else ends[::-1]
+    return eccentric_m(pair, side, errors, np.linspace(first, last, FLANK_POINTS))
 
 
 def _eccentricity(
-    pair: GearPair, which: str, shapes: ErrorShapes, limits: FlankTolerances, runout_share: float
+    pair: GearPair, side: Side, shapes: ErrorShapes, limits: FlankTolerances, runout_share: float
 ) -> float:
     """Return e: the wanted share of the runout, or what another limit leaves; everything measured is linear in e."""
-    unit = GearErrors(1.0, shapes.phase_rad, *_nothing(pair.member(which).teeth))
-    found = deviations(pair, which, unit).largest
+    unit = GearErrors(1.0, shapes.phase_rad, *_nothing(pair.member(side).teeth))
+    found = deviations(pair, side, unit).largest
     wanted = 0.5 * runout_share * limits.runout_m
     return float(min(wanted, *(getattr(limits, name) / found[name] for name in found)))
 

@@ -23,6 +23,7 @@ from siggen.gears.errors.gear_errors import GearErrors, eccentric_m
 from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial, MissingTables
+from siggen.names import Side
 from siggen.uniform_spline import UniformSpline
 
 
@@ -40,8 +41,8 @@ def with_errors(
     """
     return replace(
         missing,
-        pinion=_with_errors(missing, missing.pinion, pair, "pinion", pinion, shares),
-        gear=_with_errors(missing, missing.gear, pair, "gear", gear, shares),
+        pinion=_with_errors(missing, missing.pinion, pair, Side.DRIVER, pinion, shares),
+        gear=_with_errors(missing, missing.gear, pair, Side.DRIVEN, gear, shares),
     )
 
 
@@ -49,20 +50,20 @@ def _with_errors(
     missing: MissingMaterial,
     teeth: MissingTables,
     pair: GearPair,
-    which: str,
+    side: Side,
     errors: GearErrors,
     shares: FaceShares | None,
 ) -> MissingTables:
     position = np.linspace(missing.start_m, missing.end_m, teeth.profile_m.shape[1])
     middle = np.array([0.5 * (pair.contact_start_m + pair.contact_end_m)])
-    standing = eccentric_m(pair, which, errors, middle)
+    standing = eccentric_m(pair, side, errors, middle)
     if shares is None:
-        profile = _profiles(pair, which, errors, position)
+        profile = _profiles(pair, side, errors, position)
     else:
-        profile = shares.mean(position, lambda place: _profiles(pair, which, errors, place))
-    profile = profile - _profiles(pair, which, errors, middle)
-    profile += eccentric_m(pair, which, errors, position) - standing
-    cosine = float(np.cos(pair.member(which).pressure_angle_rad))
+        profile = shares.mean(position, lambda place: _profiles(pair, side, errors, place))
+    profile = profile - _profiles(pair, side, errors, middle)
+    profile += eccentric_m(pair, side, errors, position) - standing
+    cosine = float(np.cos(pair.member(side).pressure_angle_rad))
     return MissingTables(
         profile_m=teeth.profile_m[teeth.kind_of_tooth] + profile,
         kind_of_tooth=np.arange(len(profile), dtype=np.int32),
@@ -70,9 +71,9 @@ def _with_errors(
     )
 
 
-def _profiles(pair: GearPair, which: str, errors: GearErrors, position_m: FloatArray) -> FloatArray:
+def _profiles(pair: GearPair, side: Side, errors: GearErrors, position_m: FloatArray) -> FloatArray:
     """Return slope and form of every tooth (z, k) at positions s (k,) [m]; the gear's flank runs against s."""
     place = (position_m - pair.contact_start_m) / (pair.contact_end_m - pair.contact_start_m)
-    place = np.clip(place if which == "pinion" else 1.0 - place, 0.0, 1.0)
+    place = np.clip(place if side == Side.DRIVER else 1.0 - place, 0.0, 1.0)
     form = UniformSpline(0.0, 1.0 / (FLANK_POINTS - 1), errors.form_m.T)(place)
     return np.asarray(errors.slope_m[:, None] * place[None, :] + form.T)

@@ -19,6 +19,7 @@ import numpy as np
 from siggen.gears.geometry.corner_contact import touching_gap_m
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial, MissingTables
+from siggen.names import Side
 
 
 def driven_pair(pair: GearPair) -> GearPair:
@@ -40,16 +41,16 @@ def back_flanks(missing: MissingMaterial, pair: GearPair) -> MissingMaterial:
     tooth are made alike). Corners of tips touch where they do with the gear at its place.
     """
     line = pair.line_of_action_m
-    mirrored = (_mirrored(missing, pair, which) for which in ("pinion", "gear"))
+    mirrored = (_mirrored(missing, pair, side) for side in Side)
     return MissingMaterial(line - missing.end_m, line - missing.start_m, *mirrored)
 
 
-def _mirrored(missing: MissingMaterial, pair: GearPair, which: str) -> MissingTables:
+def _mirrored(missing: MissingMaterial, pair: GearPair, side: Side) -> MissingTables:
     """Return the tables of a gear; tooth k + 1 of the gear takes part in the pair of tooth k."""
-    teeth, later, role = (missing.pinion, 0, "gear") if which == "pinion" else (missing.gear, 1, "pinion")
+    teeth, later = (missing.pinion, 0) if side == Side.DRIVER else (missing.gear, 1)
     place = np.linspace(missing.start_m, missing.end_m, teeth.profile_m.shape[1])
-    form = teeth.profile_m - touching_gap_m(pair, which, place)
-    corner = touching_gap_m(driven_pair(pair), role, pair.line_of_action_m - place[::-1])
+    form = teeth.profile_m - touching_gap_m(pair, side, place)
+    corner = touching_gap_m(driven_pair(pair), side.mate, pair.line_of_action_m - place[::-1])
     number = np.arange(teeth.kind_of_tooth.size) + later
     return MissingTables(
         profile_m=form[:, ::-1] + corner,

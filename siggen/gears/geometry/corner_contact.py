@@ -16,24 +16,25 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.names import Side
 
 TURNS = 60
 """Of a fixed point whose error falls by the slope of the gap each time: 0.3 a third of a base pitch beside the path."""
 
 
-def tip_gap_m(pair: GearPair, which: str, position_m: FloatArray, tip_roll_rad: float | None = None) -> FloatArray:
+def tip_gap_m(pair: GearPair, side: Side, position_m: FloatArray, tip_roll_rad: float | None = None) -> FloatArray:
     """Return the gap [m] that the tip corner of one gear leaves at positions s (k,) of the pair; 0 before its tip.
 
     Parameters
     ----------
     pair : GearPair
-    which : str, gear that the tip belongs to: 'gear' for pairs before s_A, 'pinion' after s_E
+    side : Side, of the gear that the tip belongs to: the driven one for pairs before s_A, the driver after s_E
     position_m : (k,) nominal contact positions s, which pairs outside the path of contact have too [m]
     tip_roll_rad : float or None, roll angle of a tip that lies lower than the gear's [rad]
     """
-    own, length = pair.member(which), pair.line_of_action_m
-    mate = pair.member("gear" if which == "pinion" else "pinion")
-    own_m = position_m if which == "pinion" else length - position_m
+    own, length = pair.member(side), pair.line_of_action_m
+    mate = pair.member(side.mate)
+    own_m = position_m if side == Side.DRIVER else length - position_m
     tip = own.tip_roll_rad if tip_roll_rad is None else tip_roll_rad
     base_m, mate_m = own.signed_base_radius_m, mate.signed_base_radius_m
     beyond = own_m > base_m * tip
@@ -47,19 +48,19 @@ def tip_gap_m(pair: GearPair, which: str, position_m: FloatArray, tip_roll_rad: 
     return np.where(beyond, np.maximum(gap, 0.0), 0.0)
 
 
-def touching_gap_m(pair: GearPair, which: str, position_m: FloatArray, tip_roll_rad: float | None = None) -> FloatArray:
+def touching_gap_m(pair: GearPair, side: Side, position_m: FloatArray, tip_roll_rad: float | None = None) -> FloatArray:
     """Return by how much the driven gear lags until a tip corner touches, with the pinion at its place.
 
     Parameters as `tip_gap_m`, which turns the mate of the corner: for a corner of the gear that is the pinion, which
     touches ahead of its nominal position by the gap, 14 % of it at 0.15 base pitches beside the path. Derived:
     e(s + g(s)) = g(s). Not beyond about a base pitch, where the gap grows as fast as the way.
     """
-    if which == "pinion":
-        return tip_gap_m(pair, which, position_m, tip_roll_rad)
+    if side == Side.DRIVER:
+        return tip_gap_m(pair, side, position_m, tip_roll_rad)
     nominal = position_m
     for _ in range(TURNS):
-        nominal = position_m - tip_gap_m(pair, which, nominal, tip_roll_rad)
-    return tip_gap_m(pair, which, nominal, tip_roll_rad)
+        nominal = position_m - tip_gap_m(pair, side, nominal, tip_roll_rad)
+    return tip_gap_m(pair, side, nominal, tip_roll_rad)
 
 
 def _lag(mate_m: float, mate_roll: FloatArray, across_m: FloatArray, along_m: FloatArray) -> FloatArray:

@@ -17,6 +17,7 @@ import numpy as np
 from siggen.errors import UsageError
 from siggen.gears.geometry.involute import inverse_involute, involute_function
 from siggen.gears.geometry.spur_gear import SpurGear, transverse_gear
+from siggen.names import Side
 
 __all__ = ["Gear", "GearPair", "GeometryProblem", "SpurGear", "geometry_problems"]
 
@@ -266,17 +267,9 @@ class GearPair:
     def _base_radii_m(self) -> float:
         return self.pinion.base_radius_m + self.gear.signed_base_radius_m
 
-    def member(self, which: str) -> SpurGear:
-        """Return the gear named 'pinion' or 'gear'.
-
-        Raises
-        ------
-        ValueError
-            For any other name.
-        """
-        if which not in ("pinion", "gear"):
-            raise ValueError(f"received gear {which!r}; allowed: 'pinion', 'gear'")
-        return self.pinion if which == "pinion" else self.gear
+    def member(self, side: Side) -> SpurGear:
+        """Return one of its gears."""
+        return self.pinion if side == Side.DRIVER else self.gear
 
 
 @dataclass(frozen=True, slots=True)
@@ -315,18 +308,18 @@ def geometry_problems(pair: GearPair) -> tuple[GeometryProblem, ...]:
 
 
 def _numbers(pair: GearPair) -> Iterator[GeometryProblem]:
-    for which, gear in (("pinion", pair.pinion), ("gear", pair.gear)):
+    for side, gear in ((Side.DRIVER, pair.pinion), (Side.DRIVEN, pair.gear)):
         if not (isinstance(gear.teeth, int) and gear.teeth >= MIN_TEETH):
-            yield GeometryProblem("teeth", which, repr(gear.teeth), f"allowed: a whole number of at least {MIN_TEETH}")
-        yield from _positive(which, "module_m", gear.module_m)
-        yield from _positive(which, "addendum_coefficient", gear.addendum_coefficient)
-        yield from _positive(which, "clearance_coefficient", gear.clearance_coefficient)
-        yield from _positive(which, "bore_radius_m", gear.bore_radius_m)
+            yield GeometryProblem("teeth", side, repr(gear.teeth), f"allowed: a whole number of at least {MIN_TEETH}")
+        yield from _positive(side, "module_m", gear.module_m)
+        yield from _positive(side, "addendum_coefficient", gear.addendum_coefficient)
+        yield from _positive(side, "clearance_coefficient", gear.clearance_coefficient)
+        yield from _positive(side, "bore_radius_m", gear.bore_radius_m)
         if not 0.0 < gear.pressure_angle_rad < MAX_PRESSURE_ANGLE_RAD:
             received = f"{gear.pressure_angle_rad!r} rad"
-            yield GeometryProblem("pressure_angle_rad", which, received, "allowed: above 0 and below 45 degrees")
+            yield GeometryProblem("pressure_angle_rad", side, received, "allowed: above 0 and below 45 degrees")
         if not abs(gear.profile_shift) <= 2.0:
-            yield GeometryProblem("profile_shift", which, repr(gear.profile_shift), "allowed: -2 to 2")
+            yield GeometryProblem("profile_shift", side, repr(gear.profile_shift), "allowed: -2 to 2")
     yield from _positive("pair", "face_width_m", pair.face_width_m)
     yield from _positive("pair", "youngs_modulus_pa", pair.youngs_modulus_pa)
     if not 0.0 <= pair.poisson_ratio < 0.5:
@@ -345,31 +338,31 @@ def _positive(where: str, name: str, value: float) -> Iterator[GeometryProblem]:
 
 
 def _teeth(pair: GearPair) -> Iterator[GeometryProblem]:
-    for which, gear in (("pinion", pair.pinion), ("gear", pair.gear)):
+    for side, gear in ((Side.DRIVER, pair.pinion), (Side.DRIVEN, pair.gear)):
         if gear.bore_radius_m >= gear.root_radius_m:
             allowed = f"allowed: below the root radius {gear.root_radius_m:.6g} m"
-            yield GeometryProblem("bore_radius_m", which, f"{gear.bore_radius_m:.6g} m", allowed)
+            yield GeometryProblem("bore_radius_m", side, f"{gear.bore_radius_m:.6g} m", allowed)
         if gear.base_half_angle_rad <= 0.0 or gear.tip_radius_m <= max(gear.base_radius_m, gear.root_radius_m):
             allowed = (
                 f"allowed: a tip above the base radius {gear.base_radius_m:.6g} m and a tooth of some thickness there"
             )
-            yield GeometryProblem("no involute flank", which, f"profile_shift {gear.profile_shift!r}", allowed)
+            yield GeometryProblem("no involute flank", side, f"profile_shift {gear.profile_shift!r}", allowed)
         elif gear.tip_half_thickness_m <= 0.0:
             received = f"half tip thickness {gear.tip_half_thickness_m:.6g} m with profile_shift {gear.profile_shift!r}"
             yield GeometryProblem(
-                "pointed tip", which, received, "allowed: above 0; lower the profile shift or the addendum"
+                "pointed tip", side, received, "allowed: above 0; lower the profile shift or the addendum"
             )
         elif gear.base_radius_m * gear.base_half_angle_rad >= gear.root_radius_m > 0.0:
             received = f"root radius {gear.root_radius_m:.6g} m"
             allowed = f"allowed: above the half tooth thickness {gear.base_radius_m * gear.base_half_angle_rad:.6g} m"
-            yield GeometryProblem("root radius", which, received, allowed)
+            yield GeometryProblem("root radius", side, received, allowed)
         room = 0.5 * pi * gear.module_m
         if gear.rack_round_offset_m > room:
             received = (
                 f"clearance_coefficient {gear.clearance_coefficient!r}, round at {gear.rack_round_offset_m:.6g} m"
             )
             allowed = f"allowed: a rack tip round centred within half a pitch, {room:.6g} m; lower it or the addendum"
-            yield GeometryProblem("rack tip", which, received, allowed)
+            yield GeometryProblem("rack tip", side, received, allowed)
 
 
 def _centres(pair: GearPair) -> Iterator[GeometryProblem]:
@@ -391,38 +384,36 @@ def _centres(pair: GearPair) -> Iterator[GeometryProblem]:
         )
         return
     distance = pair.working_centre_distance_m
-    for which, own, mate in (("pinion", pair.pinion, pair.gear), ("gear", pair.gear, pair.pinion)):
+    for side, own, mate in ((Side.DRIVER, pair.pinion, pair.gear), (Side.DRIVEN, pair.gear, pair.pinion)):
         clearance = distance - own.tip_radius_m - mate.root_radius_m
         if clearance <= 0.0:
             received = f"tip clearance {clearance:.6g} m"
             yield GeometryProblem(
-                "tip touches root", which, received, "allowed: above 0; lower the profile shift or the addendum"
+                "tip touches root", side, received, "allowed: above 0; lower the profile shift or the addendum"
             )
 
 
 def _contact(pair: GearPair) -> Iterator[GeometryProblem]:
     if pair.contact_ratio < 1.0:
         yield GeometryProblem("contact ratio", "pair", f"{pair.contact_ratio:.6g}", "allowed: at least 1")
-    for which, gear, active in zip(("pinion", "gear"), (pair.pinion, pair.gear), pair.active_flank, strict=True):
+    for side, gear, active in zip(Side, (pair.pinion, pair.gear), pair.active_flank, strict=True):
         first = active[0]
         if first <= 0.0:
             received = f"contact {-first * gear.base_radius_m:.6g} m below the base circle"
             allowed = "allowed: contact above the base circle only; more teeth or shift"
-            yield GeometryProblem("interference", which, received, allowed)
+            yield GeometryProblem("interference", side, received, allowed)
         if first > 0.0 or gear.undercut:
-            yield from _flank_start(which, gear, first)
+            yield from _flank_start(side, gear, first)
 
 
-def _flank_start(which: str, gear: SpurGear, first: float) -> Iterator[GeometryProblem]:
+def _flank_start(side: Side, gear: SpurGear, first: float) -> Iterator[GeometryProblem]:
     try:
         start = gear.involute_start_roll_rad
     except ValueError as error:
-        yield GeometryProblem(
-            "undercut", which, f"{gear.teeth} teeth, profile_shift {gear.profile_shift!r}", str(error)
-        )
+        yield GeometryProblem("undercut", side, f"{gear.teeth} teeth, profile_shift {gear.profile_shift!r}", str(error))
         return
     if first < start:
         name = "undercut" if gear.undercut else "interference"
         received = f"contact from {first * gear.base_radius_m:.6g} m along the line of action"
         allowed = f"allowed: from the start of the involute, {start * gear.base_radius_m:.6g} m, onwards"
-        yield GeometryProblem(name, which, received, allowed)
+        yield GeometryProblem(name, side, received, allowed)

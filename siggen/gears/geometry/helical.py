@@ -22,6 +22,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.names import Side
 
 
 @lru_cache(maxsize=64)
@@ -30,14 +31,14 @@ def normal_pair(pair: GearPair) -> GearPair:
 
     Its numbers of teeth are z_n; bodies keep their ratio of root to bore.
     """
-    pinion, gear = (normal_gear(pair, which) for which in ("pinion", "gear"))
+    pinion, gear = (normal_gear(pair, side) for side in Side)
     length = pair.face_width_m / cos(pair.helix_rad)
     return replace(pair, pinion=pinion, gear=gear, face_width_m=length, centre_distance_m=None, helix_rad=0.0)
 
 
-def normal_gear(pair: GearPair, which: str) -> SpurGear:
+def normal_gear(pair: GearPair, side: Side) -> SpurGear:
     """Return the normal section of one gear of a pair; of a spur gear the gear itself."""
-    own, share = pair.member(which), cos(pair.helix_rad)
+    own, share = pair.member(side), cos(pair.helix_rad)
     if pair.helix_rad == 0.0:
         return own
     section = replace(
@@ -52,9 +53,9 @@ def normal_gear(pair: GearPair, which: str) -> SpurGear:
     return replace(section, bore_radius_m=section.root_radius_m * own.bore_radius_m / own.root_radius_m)
 
 
-def normal_rolls(pair: GearPair, which: str, roll_rad: FloatArray) -> FloatArray:
+def normal_rolls(pair: GearPair, side: Side, roll_rad: FloatArray) -> FloatArray:
     """Return the roll angles in the normal section (k,) at which a helical tooth is as high as at rolls (k,) [rad]."""
-    own, section = pair.member(which), normal_pair(pair).member(which)
+    own, section = pair.member(side), normal_pair(pair).member(side)
     height = own.radius_m(roll_rad) - own.pitch_radius_m
     ratio = (section.pitch_radius_m + height) / section.base_radius_m
     return np.minimum(np.sqrt(np.maximum(ratio**2 - 1.0, 0.0)), section.tip_roll_rad)

@@ -17,6 +17,7 @@ from siggen.arrays import FloatArray
 from siggen.gears.geometry.corner_contact import touching_gap_m
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.internal_pair import InternalPair
+from siggen.names import Side
 
 CORNER_REACH_PITCHES = 0.15
 """How far before and after the path of contact corners are followed: gaps there are ten times a usual deflection."""
@@ -87,7 +88,7 @@ def missing_material(
     position_m = np.linspace(start_m, end_m, points)
     if pair.helix_rad != 0.0:
         relief, position_m = None, nearest_place_m(pair, position_m)
-    pinion, gear = (_teeth(pair, which, relief, position_m) for which in ("pinion", "gear"))
+    pinion, gear = (_teeth(pair, side, relief, position_m) for side in Side)
     return MissingMaterial(start_m, end_m, pinion, gear)
 
 
@@ -102,18 +103,18 @@ def nearest_place_m(pair: GearPair, position_m: FloatArray) -> FloatArray:
     return position_m + np.clip(middle - position_m, -half, half)
 
 
-def missing_at_m(pair: GearPair, which: str, relief: TipRelief | None, position_m: FloatArray) -> FloatArray:
+def missing_at_m(pair: GearPair, side: Side, relief: TipRelief | None, position_m: FloatArray) -> FloatArray:
     """Return what relief and corner of one gear leave out (k,) at positions (k,) of a contact [m]."""
-    to_tip_m = pair.contact_end_m - position_m if which == "pinion" else position_m - pair.contact_start_m
-    profile = touching_gap_m(pair, which, position_m)
+    to_tip_m = pair.contact_end_m - position_m if side == Side.DRIVER else position_m - pair.contact_start_m
+    profile = touching_gap_m(pair, side, position_m)
     if relief is None:
         return profile
     share = np.clip(1.0 - np.maximum(to_tip_m, 0.0) / relief.length_m, 0.0, None)
     return np.asarray(profile + relief.amount_m * share**2)
 
 
-def _teeth(pair: GearPair, which: str, relief: TipRelief | None, position_m: FloatArray) -> MissingTables:
-    profile, teeth = missing_at_m(pair, which, relief, position_m), pair.member(which).teeth
+def _teeth(pair: GearPair, side: Side, relief: TipRelief | None, position_m: FloatArray) -> MissingTables:
+    profile, teeth = missing_at_m(pair, side, relief, position_m), pair.member(side).teeth
     made = MissingTables(profile[np.newaxis], np.zeros(teeth, dtype=np.int32), np.zeros(teeth))
     for array in (made.profile_m, made.kind_of_tooth, made.offset_m):
         array.setflags(write=False)

@@ -40,6 +40,7 @@ from siggen.gears.stiffness.foundation import foundation_compliance, root_half_a
 from siggen.gears.stiffness.pitted_beams import pit_integrals, pit_sums
 from siggen.gears.stiffness.ring_tooth import SHEAR_FACTOR, ring_tooth_parts
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.names import Side
 
 ROLL_TOLERANCE = 1e-9
 """Contacts this far (relative to the tip's roll) outside the flank count as its end: rounding of positions, no more."""
@@ -63,15 +64,15 @@ class ToothCompliance:
 
 
 def tooth_compliance(
-    pair: GearPair, which: str, roll: ArrayLike, options: StiffnessOptions, pits: Iterable[ToothDamage] = ()
+    pair: GearPair, side: Side, roll: ArrayLike, options: StiffnessOptions, pits: Iterable[ToothDamage] = ()
 ) -> ToothCompliance:
     """Return the compliances of one tooth loaded at roll angles (k,).
 
     Parameters
     ----------
     pair : GearPair
-    which : str
-        'pinion' or 'gear'.
+    side : Side
+        Of which it is.
     roll : (k,)
         Roll angles of the contact, in any order [rad].
     options : StiffnessOptions
@@ -85,20 +86,20 @@ def tooth_compliance(
 
     Source: paper A, section 2.2; with 'calibrated' derived (finite elements, healthy tooth).
     """
-    return tooth_compliances(pair, which, roll, options, (pits,))[0]
+    return tooth_compliances(pair, side, roll, options, (pits,))[0]
 
 
 def tooth_compliances(
-    pair: GearPair, which: str, roll: ArrayLike, options: StiffnessOptions, teeth: Iterable[Iterable[ToothDamage]]
+    pair: GearPair, side: Side, roll: ArrayLike, options: StiffnessOptions, teeth: Iterable[Iterable[ToothDamage]]
 ) -> list[ToothCompliance]:
     """Return `tooth_compliance` of several teeth of one gear by their pits: what all share is computed once."""
     if pair.helix_rad != 0.0:
-        return _in_normal_section(pair, which, roll, options, teeth)
-    gear = pair.member(which)
+        return _in_normal_section(pair, side, roll, options, teeth)
+    gear = pair.member(side)
     damages = [tuple(pits) for pits in teeth]
     if isinstance(gear, RingGear):
         return _of_ring(pair, gear, np.atleast_1d(np.asarray(roll, dtype=np.float64)), options, damages)
-    angles = _on_flank(gear, options.shape, np.atleast_1d(np.asarray(roll, dtype=np.float64)), which)
+    angles = _on_flank(gear, options.shape, np.atleast_1d(np.asarray(roll, dtype=np.float64)), side)
     arms = _arms(gear, angles)
     healthy = _healthy(pair, gear, angles, arms, options)
     return [_damaged(pair, gear, angles, arms, options, pits, healthy) for pits in damages]
@@ -125,16 +126,16 @@ def _of_ring(
 
 
 def _in_normal_section(
-    pair: GearPair, which: str, roll: ArrayLike, options: StiffnessOptions, teeth: Iterable[Iterable[ToothDamage]]
+    pair: GearPair, side: Side, roll: ArrayLike, options: StiffnessOptions, teeth: Iterable[Iterable[ToothDamage]]
 ) -> list[ToothCompliance]:
     """Return the compliances of helical teeth in the transverse plane: beams of the normal section on their bodies."""
     normal, share = normal_pair(pair), cos(pair.base_helix_rad) ** 2
-    section, across = normal.member(which), np.atleast_1d(np.asarray(roll, dtype=np.float64))
-    rolls = np.maximum(normal_rolls(pair, which, across), first_roll(section, options.shape))
-    found = tooth_compliances(normal, which, rolls, options, teeth)
+    section, across = normal.member(side), np.atleast_1d(np.asarray(roll, dtype=np.float64))
+    rolls = np.maximum(normal_rolls(pair, side, across), first_roll(section, options.shape))
+    found = tooth_compliances(normal, side, rolls, options, teeth)
     factor = calibration_factor(section, rolls) if options.beam == "calibrated" else 1.0
     alone = factor * _foundation(normal, section, rolls, options)
-    body = factor * _foundation(pair, pair.member(which), across, options) + axial_part(pair, which, across, options)
+    body = factor * _foundation(pair, pair.member(side), across, options) + axial_part(pair, side, across, options)
     return [
         ToothCompliance(
             one.bending / share, one.shear / share, one.axial / share, (one.foundation - alone) / share + body
@@ -143,9 +144,9 @@ def _in_normal_section(
     ]
 
 
-def axial_part(pair: GearPair, which: str, roll_rad: FloatArray, options: StiffnessOptions) -> FloatArray:
+def axial_part(pair: GearPair, side: Side, roll_rad: FloatArray, options: StiffnessOptions) -> FloatArray:
     """Return what a gear's body adds to a helical tooth's compliance by giving way along the axis (k,) [m/N]."""
-    gear = pair.member(which)
+    gear = pair.member(side)
     if options.foundation == "none":
         return np.zeros(roll_rad.size)
     angle = root_half_angle(gear, options.root_reading)
@@ -193,13 +194,13 @@ def _damaged(
     return ToothCompliance(beam[0], beam[1], beam[2], foundation)
 
 
-def _on_flank(gear: SpurGear, beam: str, roll: FloatArray, which: str) -> FloatArray:
+def _on_flank(gear: SpurGear, beam: str, roll: FloatArray, side: Side) -> FloatArray:
     first, last = first_roll(gear, beam), gear.tip_roll_rad
     slack = ROLL_TOLERANCE * last
     if not bool(np.all((roll >= first - slack) & (roll <= last + slack))):
         span = f"{np.min(roll):.6g} to {np.max(roll):.6g}"
         raise ValueError(
-            f"contact at roll {span} rad is off the {which}'s flank; allowed: {first:.6g} to {last:.6g} rad"
+            f"contact at roll {span} rad is off the {side}'s flank; allowed: {first:.6g} to {last:.6g} rad"
         )
     return np.clip(roll, first, last)
 

@@ -20,6 +20,7 @@ from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.gears.stiffness.mesh_tables import pair_kinds
 from siggen.gears.stiffness.sections import largest_contact_length_loss, union_area_m2
 from siggen.gears.stiffness.sloping_lines import largest_line_loss
+from siggen.names import Side
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,14 +66,14 @@ def damage_summary(pair: GearPair, damage: Damage) -> DamageSummary:
     """Return the extent of a damage without problems; all zero for none."""
     width = pair.face_width_m
     area = share = loss = 0.0
-    for which in ("pinion", "gear"):
-        gear = pair.member(which)
-        for tooth in damaged_teeth(damage, which):
-            pits = pits_of(damage, which, tooth)
+    for side in Side:
+        gear = pair.member(side)
+        for tooth in damaged_teeth(damage, side):
+            pits = pits_of(damage, side, tooth)
             own = union_area_m2(gear, pits, width)
             area += own
             share = max(share, own / (width * flank_arc_m(gear)))
-            loss = max(loss, _length_loss_m(pair, which, pits))
+            loss = max(loss, _length_loss_m(pair, side, pits))
     longest = max(damage, key=lambda one: one.profile_arc_m(pair.member(one.gear)), default=None)
     outlines = [one.outline for one in damage if one.outline is not None]
     return DamageSummary(
@@ -93,17 +94,17 @@ def flank_arc_m(gear: SpurGear) -> float:
     return 0.5 * gear.base_radius_m * (high**2 - low**2)
 
 
-def _length_loss_m(pair: GearPair, which: str, pits: Damage) -> float:
+def _length_loss_m(pair: GearPair, side: Side, pits: Damage) -> float:
     if pair.helix_rad == 0.0:
-        return largest_contact_length_loss(pair.member(which), pits, pair.face_width_m)
-    return largest_line_loss(pair, *((pits, ()) if which == "pinion" else ((), pits)))[0]
+        return largest_contact_length_loss(pair.member(side), pits, pair.face_width_m)
+    return largest_line_loss(pair, *((pits, ()) if side == Side.DRIVER else ((), pits)))[0]
 
 
 def _through_face(pair: GearPair, damage: Damage) -> bool:
     if pair.helix_rad == 0.0:
         return any(lost_contacts(pair, damage))
     kinds = pair_kinds(pair, damage)[1:]
-    meeting = ((pits_of(damage, "pinion", first), pits_of(damage, "gear", second)) for first, second in kinds)
+    meeting = ((pits_of(damage, Side.DRIVER, first), pits_of(damage, Side.DRIVEN, second)) for first, second in kinds)
     return any(largest_line_loss(pair, *pits)[1] for pits in meeting)
 
 
@@ -120,6 +121,6 @@ def _sagitta_m(pair: GearPair, pit: ToothDamage) -> float:
     # The arc is R_b psi^2/2: its middle has the mean square of the roll angles.
     travel = gear.signed_base_radius_m * sqrt(0.5 * (low * low + high * high))
     line = pair.line_of_action_m
-    position = travel if pit.gear == "pinion" else line - travel
+    position = travel if pit.gear == Side.DRIVER else line - travel
     s = min(max(position, pair.contact_start_m), pair.contact_end_m)
     return pit.profile_arc_m(gear) ** 2 * line / (8.0 * s * (line - s))

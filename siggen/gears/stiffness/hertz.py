@@ -26,6 +26,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.names import Side
 
 LARGEST_HALF_WIDTH = 0.5
 """Largest a_H/h_i that `weber_banaschek` reckons with. There the logarithm is 6 % off the exact approach of the half
@@ -63,8 +64,8 @@ def weber_banaschek_compliance(
 
     Source: Weber and Banaschek 1953, derived as in this module's docstring.
     """
-    first = centre_line_depth(pair, "pinion", roll_pinion)
-    second = centre_line_depth(pair, "gear", roll_gear)
+    first = centre_line_depth(pair, Side.DRIVER, roll_pinion)
+    second = centre_line_depth(pair, Side.DRIVEN, roll_gear)
     width = contact_half_width(pair, roll_pinion, roll_gear, length_m, force_n)
     width = np.minimum(width, LARGEST_HALF_WIDTH * np.minimum(first, second))
     poisson = pair.poisson_ratio
@@ -85,14 +86,14 @@ def contact_half_width(
     return np.sqrt(8.0 * force_n * radius / (pi * _plane_modulus(pair) * length_m))
 
 
-def centre_line_depth(pair: GearPair, which: str, roll: FloatArray) -> FloatArray:
+def centre_line_depth(pair: GearPair, side: Side, roll: FloatArray) -> FloatArray:
     """Return the distance from contact to tooth centre line along the line of action, h/cos(alpha_1), (k,) [m].
 
     Parameters
     ----------
     pair : GearPair
-    which : str
-        'pinion' or 'gear'.
+    side : Side
+        Of which it is.
     roll : (k,)
         Roll angles of the contact [rad].
 
@@ -103,7 +104,7 @@ def centre_line_depth(pair: GearPair, which: str, roll: FloatArray) -> FloatArra
 
     Source: derived; alpha_1 is the angle between load and the normal to the centre line.
     """
-    gear = pair.member(which)
+    gear = pair.member(side)
     return gear.half_thickness_m(roll) / np.cos(roll - gear.base_half_angle_rad)
 
 

@@ -25,6 +25,7 @@ from siggen.gears.stiffness.coupled_pairs import coupled_sum
 from siggen.gears.stiffness.hertz import linear_compliance, weber_banaschek_compliance
 from siggen.gears.stiffness.sloping_lines import line_stiffness, lost_shares, path_points_m
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.names import Side
 
 __all__ = [
     "PairCompliance",
@@ -155,8 +156,8 @@ def pair_compliance(
     roll_pinion, roll_gear = rolls_at(pair, position)
     return PairCompliance(
         contact=contact_compliance(pair, position, pinion_pits, gear_pits, options, through_face=through_face),
-        pinion=tooth_compliance(pair, "pinion", roll_pinion, options, pinion_pits),
-        gear=tooth_compliance(pair, "gear", roll_gear, options, gear_pits),
+        pinion=tooth_compliance(pair, Side.DRIVER, roll_pinion, options, pinion_pits),
+        gear=tooth_compliance(pair, Side.DRIVEN, roll_gear, options, gear_pits),
     )
 
 
@@ -223,9 +224,9 @@ def kinds_stiffness(
     """
     at = position_m if pair.helix_rad == 0.0 else path_points_m(pair)
     teeth = []
-    for which, rolls, own in zip(("pinion", "gear"), rolls_at(pair, at), zip(*kinds, strict=True), strict=True):
+    for side, rolls, own in zip(Side, rolls_at(pair, at), zip(*kinds, strict=True), strict=True):
         distinct = list(dict.fromkeys(own))
-        found = tooth_compliances(pair, which, rolls, options, distinct)
+        found = tooth_compliances(pair, side, rolls, options, distinct)
         teeth.append({pits: one.total for pits, one in zip(distinct, found, strict=True)})
     out = np.empty((len(kinds), position_m.size))
     for row, (first, second) in enumerate(kinds):
@@ -276,7 +277,7 @@ def mesh_stiffness(
     if not np.all(np.isfinite(angle)):
         raise ValueError("angle_rad holds values that are not finite; allowed: finite angles")
     index, count, position = pairs_in_contact(pair, angle)
-    pinion_bad, gear_bad = damaged_teeth(damage, "pinion"), damaged_teeth(damage, "gear")
+    pinion_bad, gear_bad = damaged_teeth(damage, Side.DRIVER), damaged_teeth(damage, Side.DRIVEN)
     pinion_tooth, gear_tooth = count % pair.pinion.teeth, count % pair.gear.teeth
     # -1 stands for any healthy tooth: all such pairs are evaluated in one go.
     pinion_key = np.where(np.isin(pinion_tooth, pinion_bad), pinion_tooth, -1)
@@ -284,7 +285,7 @@ def mesh_stiffness(
     total, stiffness = np.zeros(angle.size), np.empty(index.size)
     for first, second in sorted(set(zip(pinion_key.tolist(), gear_key.tolist(), strict=True))):
         chosen = (pinion_key == first) & (gear_key == second)
-        kind = pits_of(damage, "pinion", first), pits_of(damage, "gear", second)
+        kind = pits_of(damage, Side.DRIVER, first), pits_of(damage, Side.DRIVEN, second)
         stiffness[chosen] = kinds_stiffness(pair, position[chosen], options, (kind,), through_face=through_face)[0]
         np.add.at(total, index[chosen], stiffness[chosen])
     if options.coupling == "none":

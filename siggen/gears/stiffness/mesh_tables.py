@@ -24,6 +24,7 @@ from siggen.gears.stiffness.coupled_pairs import approach_forces
 from siggen.gears.stiffness.coupled_rows import CoupledRows, coupled_contributions, neighbour_runs
 from siggen.gears.stiffness.mesh_stiffness import kinds_stiffness
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.names import Side
 
 HEALTHY = -1
 """Stands for every tooth without damage."""
@@ -130,11 +131,11 @@ def pair_kinds(pair: GearPair, damage: Damage) -> tuple[tuple[int, int], ...]:
     ValueError
         If a damaged tooth does not exist.
     """
-    pinion, gear = damaged_teeth(damage, "pinion"), damaged_teeth(damage, "gear")
-    for which, teeth, count in (("pinion", pinion, pair.pinion.teeth), ("gear", gear, pair.gear.teeth)):
+    pinion, gear = damaged_teeth(damage, Side.DRIVER), damaged_teeth(damage, Side.DRIVEN)
+    for side, teeth, count in ((Side.DRIVER, pinion, pair.pinion.teeth), (Side.DRIVEN, gear, pair.gear.teeth)):
         outside = [tooth for tooth in teeth if not 0 <= tooth < count]
         if outside:
-            raise ValueError(f"damage on {which} tooth {outside[0]}; allowed: 0 to {count - 1}")
+            raise ValueError(f"damage on {side} tooth {outside[0]}; allowed: 0 to {count - 1}")
     single = [(i, HEALTHY) for i in pinion] + [(HEALTHY, j) for j in gear]
     return ((HEALTHY, HEALTHY), *single, *((i, j) for i in pinion for j in gear))
 
@@ -167,7 +168,7 @@ def kind_stiffness(
     ValueError
         If a position is off the path of contact, or pits leave no section, or no contact where that is not allowed.
     """
-    damages = [(pits_of(damage, "pinion", first), pits_of(damage, "gear", second)) for first, second in kinds]
+    damages = [(pits_of(damage, Side.DRIVER, first), pits_of(damage, Side.DRIVEN, second)) for first, second in kinds]
     return kinds_stiffness(pair, position_m, options, damages, through_face=through_face)
 
 
@@ -230,13 +231,13 @@ def _newest_positions(pair: GearPair, damage: Damage) -> FloatArray:
     """Return positions of the newest pair over one base pitch, with zone edges, centres and ends of damage (k,) [m]."""
     start, end, pitch = pair.engagement_start_m, pair.engagement_end_m, pair.base_pitch_m
     marks = [np.array([start, end, np.nextafter(end, np.inf)])]
-    for which in ("pinion", "gear"):
-        gear = pair.member(which)
-        rows = pit_rows(pit for pit in damage if pit.gear == which)
+    for side in Side:
+        gear = pair.member(side)
+        rows = pit_rows(pit for pit in damage if pit.gear == side)
         ends = np.concatenate([rows[:, HEIGHT], rows[:, LOWEST], rows[:, HIGHEST]])
         low, high = flank_heights(gear)
         travel = np.asarray(gear.roll_at_height(np.clip(ends, low, high))) * gear.base_radius_m
-        marks.append(travel if which == "pinion" else pair.line_of_action_m - travel)
+        marks.append(travel if side == Side.DRIVER else pair.line_of_action_m - travel)
     # Within 1e-6 of a pitch two marks are one: hundreds of pits would otherwise crowd the grid.
     folded = (np.concatenate(marks) - start) % pitch
     folded = folded[np.unique(np.round(folded / (1e-6 * pitch)), return_index=True)[1]]

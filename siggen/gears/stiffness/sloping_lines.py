@@ -18,6 +18,7 @@ from siggen.gears.damage.tooth_damage import ToothDamage
 from siggen.gears.damage.whole_loss import WHOLE_FACE
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.helical import slice_shifts_m
+from siggen.names import Side
 
 SLICES = 128
 """Of a face: their means err by 1e-5 of the stiffness (tested)."""
@@ -64,9 +65,9 @@ def line_lengths_m(
     """
     place = _places_m(pair, position_m)
     on_path, lost = _on_path(pair, place), np.zeros(place.shape)
-    for which, pits in (("pinion", pinion_pits), ("gear", gear_pits)):
-        chords = flank_chords(pair.member(which), pits, pair.face_width_m, SLICES)
-        along = place if which == "pinion" else pair.line_of_action_m - place
+    for side, pits in ((Side.DRIVER, pinion_pits), (Side.DRIVEN, gear_pits)):
+        chords = flank_chords(pair.member(side), pits, pair.face_width_m, SLICES)
+        along = place if side == Side.DRIVER else pair.line_of_action_m - place
         for j in np.flatnonzero(chords.intervals):
             lost[:, j] = np.maximum(lost[:, j], chords.covered[j] * _inside(pair, chords, int(j), along[:, j]))
     slice_m = pair.face_width_m / SLICES

@@ -19,6 +19,7 @@ from siggen.gears.stiffness.calibration import outside_calibration
 from siggen.gears.stiffness.foundation import outside_foundation_fit
 from siggen.gears.stiffness.hertz import centre_line_depth, contact_half_width
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.names import Side
 
 POISSON_RANGE = (0.25, 0.35)
 """Around 0.3, for which the foundation's fit and the finite elements were made."""
@@ -27,7 +28,7 @@ WIDE_CONTACT = 0.25
 
 
 def stiffness_notes(
-    pair: GearPair, options: StiffnessOptions, gears: Sequence[str] = ("pinion", "gear")
+    pair: GearPair, options: StiffnessOptions, gears: Sequence[str] = (Side.DRIVER, Side.DRIVEN)
 ) -> tuple[str, ...]:
     """Return what to know about a pair's stiffness model, one sentence each; empty where the models hold.
 
@@ -46,8 +47,8 @@ def stiffness_notes(
     Source: derived; limits of the sources named in this module's docstring.
     """
     return (
-        *_gear_notes(gears[0], normal_gear(pair, "pinion"), options),
-        *_gear_notes(gears[1], normal_gear(pair, "gear"), options),
+        *_gear_notes(gears[0], normal_gear(pair, Side.DRIVER), options),
+        *_gear_notes(gears[1], normal_gear(pair, Side.DRIVEN), options),
         *_pair(pair, options),
         *_helix(pair),
     )
@@ -109,9 +110,9 @@ def _widest_contact(pair: GearPair, force_n: float) -> float:
     """Return the largest a_H/h_i over the path of contact of healthy flanks."""
     position = np.linspace(pair.contact_start_m, pair.contact_end_m, 65)
     rolls = {
-        "pinion": position / pair.pinion.base_radius_m,
+        Side.DRIVER: position / pair.pinion.base_radius_m,
         "gear": (pair.line_of_action_m - position) / pair.gear.base_radius_m,
     }
-    width = contact_half_width(pair, rolls["pinion"], rolls["gear"], np.full(65, pair.face_width_m), force_n)
-    depth = np.minimum(*(centre_line_depth(pair, which, rolls[which]) for which in ("pinion", "gear")))
+    width = contact_half_width(pair, rolls[Side.DRIVER], rolls[Side.DRIVEN], np.full(65, pair.face_width_m), force_n)
+    depth = np.minimum(*(centre_line_depth(pair, side, rolls[side]) for side in Side))
     return float(np.max(width / depth))

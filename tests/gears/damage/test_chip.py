@@ -25,13 +25,14 @@ from siggen.gears.geometry.corner_contact import touching_gap_m
 from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES, missing_material
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS, MeshTables, mesh_tables
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.names import Side
 from tests.gears.builders import pair_18_47
 from tests.gears.damage.rigid_gears import RigidGears
 
 PAIR = pair_18_47()
 GAP = 2.0 - PAIR.contact_ratio
 BACKLASH_M, NEXT_TO_NOTHING_N = 80e-6, 0.01
-GONE = WholeChip("pinion", 5, inf)
+GONE = WholeChip(Side.DRIVER, 5, inf)
 
 
 @cache
@@ -49,7 +50,7 @@ def unloaded_m(chosen: PairLaw, pitches: FloatArray) -> FloatArray:
     return static_approaches_m(chosen, NEXT_TO_NOTHING_N, pitches)
 
 
-@pytest.mark.parametrize("which", ["pinion", "gear"])
+@pytest.mark.parametrize("which", list(Side))
 def test_teeth_that_are_all_chipped_alike_are_those_of_a_lower_addendum(which: str) -> None:
     height_m = 0.2 * PAIR.pinion.module_m
     teeth = PAIR.member(which)
@@ -67,24 +68,26 @@ def test_teeth_that_are_all_chipped_alike_are_those_of_a_lower_addendum(which: s
 def test_the_less_is_lost_the_less_is_missing_and_nothing_takes_nothing() -> None:
     position = np.linspace(PAIR.contact_start_m, PAIR.contact_end_m, 501)
     heights = [1e-9, 0.2e-3, 0.8e-3, 2e-3]
-    found = [WholeChip("pinion", 0, height).missing_m(PAIR, position) for height in heights]
+    found = [WholeChip(Side.DRIVER, 0, height).missing_m(PAIR, position) for height in heights]
     assert found[0].max() < 1e-15
     assert all(np.all(more >= less) for less, more in pairwise(found))
-    assert all(WholeChip("pinion", 0, more).hides(WholeChip("pinion", 0, less)) for less, more in pairwise(heights))
-    assert not GONE.hides(WholeChip("pinion", 4, 1e-3))
-    assert GONE.hides(FlankPit("pinion", 5, 1.9e-3, 10e-3, 0.3e-3, 0.2e-3, 0.4e-3, "flat"))
+    assert all(
+        WholeChip(Side.DRIVER, 0, more).hides(WholeChip(Side.DRIVER, 0, less)) for less, more in pairwise(heights)
+    )
+    assert not GONE.hides(WholeChip(Side.DRIVER, 4, 1e-3))
+    assert GONE.hides(FlankPit(Side.DRIVER, 5, 1.9e-3, 10e-3, 0.3e-3, 0.2e-3, 0.4e-3, "flat"))
 
 
 def test_corners_are_followed_as_far_as_they_carry() -> None:
     """Both corners touch somewhere in the gap, whose length is what whole pairs leave."""
-    reach = corner_reach_pitches(PAIR, "pinion", inf) - MARGIN_PITCHES
+    reach = corner_reach_pitches(PAIR, Side.DRIVER, inf) - MARGIN_PITCHES
     ends = PAIR.contact_end_m + reach * PAIR.base_pitch_m, PAIR.contact_start_m - (GAP - reach) * PAIR.base_pitch_m
-    gaps = [touching_gap_m(PAIR, which, np.array([s]))[0] for which, s in zip(("pinion", "gear"), ends, strict=True)]
+    gaps = [touching_gap_m(PAIR, which, np.array([s]))[0] for which, s in zip(Side, ends, strict=True)]
     assert gaps[0] == pytest.approx(gaps[1], rel=0.02)  # places 1e-3 of a base pitch apart, 5e-3 of this way
-    assert corner_reach_pitches(PAIR, "pinion", 0.1e-3) == CORNER_REACH_PITCHES
+    assert corner_reach_pitches(PAIR, Side.DRIVER, 0.1e-3) == CORNER_REACH_PITCHES
     assert reach_pitches(PAIR, ()) == CORNER_REACH_PITCHES
-    assert keeps_contact(PAIR, "pinion", 2e-3)
-    assert not keeps_contact(PAIR, "pinion", 6.9e-3)
+    assert keeps_contact(PAIR, Side.DRIVER, 2e-3)
+    assert not keeps_contact(PAIR, Side.DRIVER, 6.9e-3)
 
 
 @pytest.mark.parametrize("height_m", [3.5e-3, inf])
@@ -116,7 +119,7 @@ def test_a_missing_tooth_has_no_back_flank() -> None:
         assert 5 not in carried
 
 
-@pytest.mark.parametrize(("which", "tooth"), [("pinion", 5), ("gear", 9), ("gear", 0)])
+@pytest.mark.parametrize(("which", "tooth"), [(Side.DRIVER, 5), (Side.DRIVEN, 9), (Side.DRIVEN, 0)])
 def test_the_back_flank_of_a_chipped_tooth_is_chipped_where_a_misplaced_one_is_misplaced(
     which: str, tooth: int
 ) -> None:
@@ -131,7 +134,7 @@ def test_the_back_flank_of_a_chipped_tooth_is_chipped_where_a_misplaced_one_is_m
     sound = getattr(back_flanks(whole, PAIR), which).profile_m[0]
     chipped = np.abs(back.profile_m[back.kind_of_tooth] - sound).max(axis=1) > 0.0
     np.testing.assert_array_equal(chipped, misplaced.offset_m != 0.0)
-    role = "gear" if which == "pinion" else "pinion"
+    role = which.mate
     lower = replace(driven, **{role: replace(driven.member(role), addendum_coefficient=0.8)})
     position = PAIR.line_of_action_m - np.linspace(whole.end_m, whole.start_m, TABLE_POINTS)
     expected = touching_gap_m(lower, role, position)
