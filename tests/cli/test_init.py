@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import jsonschema
@@ -67,16 +65,6 @@ def test_an_editor_completes_and_checks_a_rig_by_the_schema_beside_it(tmp_path: 
         editor.validate({key: value for key, value in rig.items() if key != "extends"})
 
 
-SIGGEN = str(Path(sys.executable).parent / "siggen")
-
-
-def fresh(*arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run the installed command in a process of its own, without a terminal."""
-    return subprocess.run(
-        [SIGGEN, "init", *arguments], capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL
-    )
-
-
 def test_all_digits_that_a_user_gives_are_written(tmp_path: Path) -> None:
     file = tmp_path / "rig.yaml"
     given = ["--teeth", "32,80", "--module", "1.5125", "--face-width", "20.1255", "--bores", "20.3452,30"]
@@ -121,7 +109,7 @@ def test_the_rate_of_recordings_is_taken_with_the_mesh_harmonics_that_it_carries
 
 
 def test_all_missing_options_are_said_at_once(tmp_path: Path) -> None:
-    made = fresh("--module", "2", "--out", str(tmp_path / "rig.yaml"))
+    made = command("siggen", "init", "--module", "2", "--out", str(tmp_path / "rig.yaml"))
     assert made.returncode == 2
     assert "--teeth: received nothing; give the teeth of pinion and gear" in made.stderr
     assert "--speed: received nothing; give the speed of the pinion" in made.stderr

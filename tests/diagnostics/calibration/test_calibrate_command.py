@@ -106,7 +106,7 @@ def test_recordings_at_half_the_rate_of_the_rig_take_one_call(
 
 
 def test_every_gearbox_of_the_set_draws_its_own_path(calibrated: tuple[Path, Path, str]) -> None:
-    config = siggen.load_config(calibrated[1], ["states={healthy: {}}", "specimens=8", "duration_s=1.0"])
+    config = siggen.load_config(calibrated[1], ["states={healthy: {}}", "specimens=8", "duration_s=0.1"])
     records = [siggen.run(siggen.draw(config, k)) for k in range(3)]
     numbers = {record.labels["path_number_sensor_1_vertical"] for record in records}
     assert len(numbers) > 1

@@ -54,7 +54,7 @@ def hostile(made: MadeGears, kind: str) -> dict[str, np.ndarray]:
 
 @pytest.mark.parametrize("kind", ["spikes", "offset and drift", "clipped", "foreign lines", "swelling"])
 def test_what_real_recorders_and_machines_add_does_not_turn_the_angle(kind: str) -> None:
-    made = made_gears(TEETH, noise=1.0)
+    made = made_gears(TEETH, noise=1.0, seconds=4.0)
     found = shaft_angle(hostile(made, kind), made.fs_hz, TEETH, (22.0, 26.0))
     assert found.given
     assert made.error_pitches(found) < 0.03
@@ -62,7 +62,7 @@ def test_what_real_recorders_and_machines_add_does_not_turn_the_angle(kind: str)
 
 @pytest.mark.parametrize("limits", [(25.5, 30.0), (17.0, 22.5)])
 def test_a_range_that_misses_the_speed_is_refused_with_the_speed_that_was_seen(limits: tuple[float, float]) -> None:
-    made = made_gears(TEETH)
+    made = made_gears(TEETH, seconds=4.0)
     with pytest.raises(
         UsageError, match=r"(the lines fit 2[34]\.\d+ Hz|no lines of 27/71 teeth).*Check range and teeth"
     ):
