@@ -17,12 +17,11 @@ import numpy as np
 
 from benchmarks.random_gearbox import TEETH, drawn_numbers, random_config
 from benchmarks.row import Row, duration_text
-from siggen.config import Config
 from siggen.dynamics.drive.drive import Drive
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
 from siggen.errors import SolverFailure
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.planning.plan import planned_record
 from siggen.record.specimen_state import SpecimenState, refused_as, specimen_state
@@ -60,7 +59,7 @@ class Found:
 class Case:
     """The record of a random gearbox, ready to be integrated in many ways."""
 
-    config: Config
+    config: SetDesign
     specimen: Specimen
     state: SpecimenState
     point: OperatingPoint
@@ -129,7 +128,7 @@ def measured(count: int) -> Iterator[Found]:
             yield found
 
 
-def _found(config: Config, number: int) -> Found | None:
+def _found(config: SetDesign, number: int) -> Found | None:
     """Return what is found of a gearbox, every second one healthy; None if its motion diverges."""
     case = drawn_case(config, number % 2)
     law, sampling, begin = case.specimen.law, case.specimen.sampling, time.process_time()
@@ -144,9 +143,9 @@ def _found(config: Config, number: int) -> Found | None:
     return Found(number, grid.steps, label, worst_error(response, fine), apart, chosen - begin, looped - chosen)
 
 
-def drawn_case(config: Config, state_id: int) -> Case:
+def drawn_case(config: SetDesign, state_id: int) -> Case:
     """Return the record of a state that begins before a spalled tooth enters."""
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     state = specimen_state(specimen, state_id)
     records = (planned_record(config, i) for i in range(config.records_per_specimen))
     record = next(one for one in records if one.state_id == state_id)

@@ -20,8 +20,8 @@ import numpy as np
 from benchmarks.shipped import ROOT, shipped
 from siggen.columns.record import SimulatedRecord
 from siggen.columns.versions import SIMULATION_VERSION
-from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.gearbox.design import SetDesign
 from siggen.planning.plan import planned_record
 from siggen.sets.drawn import simulated
 
@@ -101,7 +101,7 @@ class Moved(NamedTuple):
 def records(preset: str) -> Iterator[SimulatedRecord]:
     """Yield a short record of every state of the first gearbox of a preset, at its first operating point."""
     config = shipped(_file(preset), f"duration_s={DURATION_S}")
-    found = simulated(config, [_first_record(config, state) for state in range(len(config.states))])
+    found = simulated(config, [_first_record(config, state) for state in range(len(config.config.states))])
     for record in found:
         if not isinstance(record, SimulatedRecord):
             raise RuntimeError(f"{preset}: {record.reason}")
@@ -216,7 +216,7 @@ def main(arguments: Sequence[str]) -> int:
     return int(moved > 0 or len(others) > 0)
 
 
-def _first_record(config: Config, state: int) -> int:
+def _first_record(config: SetDesign, state: int) -> int:
     return next(i for i in range(config.records_per_specimen) if planned_record(config, i).state_id == state)
 
 

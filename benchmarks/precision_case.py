@@ -10,11 +10,10 @@ import numpy as np
 
 from benchmarks.shipped import QUICKSTART, shipped
 from siggen.arrays import FloatArray
-from siggen.config import Config
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.motion import Motion
 from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.planning.plan import planned_record
 from siggen.record.specimen_state import SpecimenState, specimen_state
@@ -29,7 +28,7 @@ SIGNAL_S, LOOP_S = 0.3, 1.0
 class Case:
     """A record, ready to be integrated in many ways."""
 
-    config: Config
+    config: SetDesign
     specimen: Specimen
     state: SpecimenState
     point: OperatingPoint
@@ -103,8 +102,8 @@ def linear_case(gearbox: int, state: int) -> Case:
     return _case(shipped(QUICKSTART, f"duration_s={SIGNAL_S}"), gearbox, state)
 
 
-def _case(config: Config, gearbox: int, state: int) -> Case:
-    state_id = state % len(config.states)
+def _case(config: SetDesign, gearbox: int, state: int) -> Case:
+    state_id = state % len(config.config.states)
     record = next(
         one
         for one in (
@@ -113,7 +112,7 @@ def _case(config: Config, gearbox: int, state: int) -> Case:
         )
         if one.state_id == state_id
     )
-    specimen = draw_specimen(config, gearbox)
+    specimen = config.gearbox(gearbox)
     made = specimen_state(specimen, state_id)
     point = specimen.points[record.operating_point_id]
     driven = record_drive(specimen, made.mesh.structure, record)

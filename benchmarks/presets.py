@@ -9,9 +9,9 @@ from pathlib import Path
 from benchmarks.row import Row, duration_text
 from benchmarks.shipped import ROOT, shipped
 from siggen.columns.record import SimulatedRecord, record_batch, record_schema
-from siggen.config import Config
 from siggen.dataset.shard import table_draft
 from siggen.dataset.storage import LocalFolder
+from siggen.gearbox.design import SetDesign
 from siggen.planning.plan import planned_record, record_ids_of
 from siggen.record.stage_times import collected, stage
 from siggen.sets.drawn import set_columns, simulated
@@ -31,7 +31,7 @@ def rows(*, quick: bool) -> Iterator[Row]:
         yield _row(file.stem, config, mean)
 
 
-def _row(name: str, config: Config, cost: Mapping[str, float]) -> Row:
+def _row(name: str, config: SetDesign, cost: Mapping[str, float]) -> Row:
     channels, total = len(config.channels), sum(cost.values())
     goal = GOALS_S.get(name)
     parts = ", ".join(f"{stage} {1e3 * value:.1f}" for stage, value in cost.items())
@@ -44,7 +44,7 @@ def _row(name: str, config: Config, cost: Mapping[str, float]) -> Row:
     )
 
 
-def _costs(config: Config, gearbox: int) -> dict[str, float]:
+def _costs(config: SetDesign, gearbox: int) -> dict[str, float]:
     """Return the CPU time of every stage per second of signal; plan and tables are shared out to all records."""
     ids = record_ids_of(config, gearbox)
     chosen = [ids[round(k * (len(ids) - 1) / (RECORDS - 1))] for k in range(RECORDS)]

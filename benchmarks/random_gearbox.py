@@ -10,8 +10,8 @@ from math import ceil, exp, log
 from random import Random
 
 from benchmarks.shipped import ROOT, shipped
-from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.gearbox.design import SetDesign
 
 SPEED_HZ, TORQUE_NM, DAMPING, MODULE_MM = (0.5, 150.0), (0.5, 200.0), (0.005, 0.3), (1.0, 6.0)
 PRESET, PRESET_MODULE_MM = ROOT / "configs" / "quickstart.yaml", 3.0
@@ -36,7 +36,7 @@ def drawn_numbers(number: int) -> dict[str, float]:
     return {name: exp(rng.uniform(log(low), log(high))) for name, (low, high) in ranges.items()}
 
 
-def random_config(number: int) -> Config | None:
+def random_config(number: int) -> SetDesign | None:
     """Return a configuration of one gearbox, healthy and spalled, some mesh periods long; None if it is refused."""
     drawn = drawn_numbers(number)
     size = drawn["module_mm"] / PRESET_MODULE_MM

@@ -15,8 +15,8 @@ import numpy as np
 from benchmarks.anywhere import FEW, GEARBOXES, TOLERANCE, drawn_case, worst_error
 from benchmarks.random_gearbox import random_config
 from benchmarks.row import Row
-from siggen.config import Config
 from siggen.errors import SolverFailure
+from siggen.gearbox.design import SetDesign
 from siggen.record.specimen_state import refused_as
 from siggen.specimen.step_choice import LEVELS, stepped_motion
 
@@ -79,7 +79,7 @@ def started(count: int) -> Iterator[Started]:
             yield found
 
 
-def _started(config: Config, state_id: int) -> Started | None:
+def _started(config: SetDesign, state_id: int) -> Started | None:
     case = drawn_case(config, state_id)
     with refused_as("outside_model"):
         stepped = stepped_motion(case.specimen.sampling, case.specimen.law, case.state.mesh, case.point, case.driven)

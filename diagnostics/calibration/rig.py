@@ -79,16 +79,17 @@ def read_rig(file: Path) -> CalibratedRig:
     UsageError
         If it has no accelerometers, it is a planetary set, or its gears are drawn.
     """
-    config = siggen.load_config(file)
-    if config.planetary is not None:
+    design = siggen.load_config(file)
+    train = siggen.draw(design).drivetrain
+    if any(gear.places for gear in train.gears):
         raise UsageError(
             f"{file}: planetary: received a planetary set; forces of its planets turn with the carrier, so no path "
             "from bearings at rest carries its lines. Allowed: pairs and machines of several meshes. "
             f"`siggen-diagnostics baseline --config {file}` watches such machines by their recordings"
         )
-    if config.gears.pairs:
+    if design.pairs:
         raise UsageError(f"{file}: gears differ within the set; a calibration is of one machine of known teeth")
-    found = CalibratedRig(file, config.canonical(), drivetrain(siggen.draw(config).drivetrain), config.places.pressed)
+    found = CalibratedRig(file, design.canonical(), drivetrain(train), design.places.pressed)
     if not found.sensors:
         raise UsageError(f"{file}: sensors: received {', '.join(found.left_out)}; allowed: at least one accelerometer")
     return found

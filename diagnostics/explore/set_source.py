@@ -152,7 +152,4 @@ def _damage(table: pa.Table | None, ids: np.ndarray) -> dict[int, list[dict[str,
 
 def flank_sizes(dataset: Dataset, teeth: Mapping[str, int]) -> dict[str, dict[str, float] | None]:
     """Return the flank's size of every gear but a ring, by its number of teeth."""
-    return {
-        gear: flank_size(form.module_mm, form.pressure_angle_deg, form.face_width_mm, wheel.profile_shift, teeth[gear])
-        for gear, (form, wheel) in dataset.gears.items()
-    }
+    return {gear: flank_size(*law, teeth[gear]) for gear, law in dataset.gears.items()}

@@ -25,7 +25,7 @@ def configured_train(file: Path) -> GearTrain:
     ConfigError
         If it cannot be used.
     """
-    config = siggen.load_config(file)
-    if config.gears.pairs:
+    design = siggen.load_config(file)
+    if design.pairs:
         raise UsageError(f"{file}: gears: received gears that differ within a set; allowed: one pair of known teeth")
-    return siggen.draw(config).drivetrain
+    return siggen.draw(design).drivetrain

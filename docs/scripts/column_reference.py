@@ -16,7 +16,6 @@ import siggen
 from siggen.checks.quantity_names import available_quantities
 from siggen.columns.common_columns import HOUSING_COLUMNS
 from siggen.columns.record import damage_schema, record_schema
-from siggen.gearbox.possible import PossibleGearbox
 from siggen.names import PAIR as PAIR_NAMES
 from siggen.record.quantities import quantity_column
 from siggen.sets.drawn import set_columns
@@ -153,7 +152,7 @@ def rows(fields: Iterable[pa.Field], brought: Mapping[str, str], named: Iterable
 def internals() -> Iterator[str]:
     """Yield the internal quantities of a gearbox with casing, tooth pairs and oil friction, a line for each meaning."""
     names: dict[str, list[str]] = {}
-    for name in available_quantities(PossibleGearbox(siggen.load_config(CONFIGS / "quickstart.yaml"))):
+    for name in available_quantities(siggen.load_config(CONFIGS / "quickstart.yaml").possible):
         column = quantity_column(name, PAIR_NAMES)
         shown = re.sub(r"pair_\d+", "pair_k", name)
         spelled = column.meaning.startswith(name.replace("_", " "))

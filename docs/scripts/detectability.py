@@ -24,7 +24,7 @@ from report_pages import run
 import siggen
 from diagnostics.audit.envelope import quantities
 from siggen.config.inheritance import inherited
-from siggen.config.yaml_source import read_yaml
+from siggen.keys.yaml_source import read_yaml
 
 RUNS, CONFIGS, FIGURE = Path("runs"), Path("configs"), Path("docs/figures/presets_detectability.png")
 LENGTHS = (10, 20, 30, 40, 60, 80, 100, 150)

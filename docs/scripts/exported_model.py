@@ -119,17 +119,16 @@ def compare(config, overrides, samples=600, record=0, rtol=1e-6):
     """Return times [s], then approach [m], mesh force [N] and tilt [rad] of every mesh by siggen and by scipy."""
     from siggen.checks.loading import load_config
     from siggen.config import by_reference
-    from siggen.gearbox.draw import draw_specimen
     from siggen.planning.plan import planned_record
     from siggen.record.internals import internals_table
     from siggen.views.exported_model import exported_model, write_model
 
     fs_hz = load_config(config, overrides).fs_hz
     loaded = load_config(config, [*overrides, f"duration_s={samples / fs_hz}"])
-    if loaded.dynamics.mesh.law == "pairs":  # the same steps in both: Runge-Kutta
-        loaded = loaded.model_copy(update={"dynamics": by_reference(loaded.dynamics)})
+    if loaded.config.dynamics.mesh.law == "pairs":  # the same steps in both: Runge-Kutta
+        loaded = loaded.with_sections(dynamics=by_reference(loaded.config.dynamics))
     planned = planned_record(loaded, record)
-    drawn = draw_specimen(loaded, planned.specimen_id), planned
+    drawn = loaded.gearbox(planned.specimen_id), planned
     with tempfile.TemporaryDirectory() as folder:
         write_model(exported_model(*drawn), Path(folder) / "model.npz")
         with np.load(Path(folder) / "model.npz") as file:

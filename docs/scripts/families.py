@@ -19,7 +19,7 @@ from report_pages import run
 
 import siggen
 from siggen.config.inheritance import inherited
-from siggen.config.yaml_source import read_yaml
+from siggen.keys.yaml_source import read_yaml
 
 RUNS, CONFIGS = Path("runs"), Path("configs")
 STATES = ("healthy", "face_80", "through")

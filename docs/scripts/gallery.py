@@ -6,8 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from siggen.checks.loading import load_config
-from siggen.config import Config
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gears.damage.tooth_damage import pits_of
 from siggen.gears.stiffness.sections import contact_length_loss
 from siggen.specimen.mesh_teeth import all_teeth
@@ -18,10 +17,10 @@ from siggen.views.stiffness_curves import StiffnessCurve, stiffness_curves
 FIGURES = Path(__file__).resolve().parents[1] / "figures"
 PAPER = "configs/paper_a.yaml"
 STATES = ("healthy", "slight", "moderate", "severe")
-Cases = dict[str, tuple[Config, str]]
+Cases = dict[str, tuple[SetDesign, str]]
 
 
-def varied(state: str, key: str, value: float) -> Config:
+def varied(state: str, key: str, value: float) -> SetDesign:
     """Return the paper's set with one size of one state changed; that state keeps no pits of a milder one."""
     milder = STATES[STATES.index(state) - 1]
     alone = [f"states.{state}.grows=null", f"states.{state}.like={milder}"]
@@ -33,7 +32,7 @@ def sweep(symbol: str, key: str, values: tuple[float, ...], state: str = "modera
     return {f"{state}, {symbol} = {value} mm": (varied(state, key, value), state) for value in values}
 
 
-def scattered(half_mm: float) -> Config:
+def scattered(half_mm: float) -> SetDesign:
     """Return the paper's set with 48 pits of the severe state scattered about the pitch line, alike for all sizes."""
     damage = (
         f"{{kind: clustered, count: 48, spread_profile_mm: 0.4, semi_axis_face_mm: 0.3, "
@@ -52,15 +51,15 @@ GROUPS: dict[str, Cases] = {
 }
 
 
-def curves(config: Config, state: str) -> tuple[StiffnessCurve, StiffnessCurve]:
+def curves(config: SetDesign, state: str) -> tuple[StiffnessCurve, StiffnessCurve]:
     """Return the healthy curve and that of a state, 1/200 degree apart."""
-    found = {c.state: c for c in stiffness_curves(draw_specimen(config, 0), points_per_pitch=4000)}
+    found = {c.state: c for c in stiffness_curves(config.gearbox(0), points_per_pitch=4000)}
     return found["healthy"], found[state]
 
 
-def contact_extent(config: Config, state: str) -> tuple[float, float, float]:
+def contact_extent(config: SetDesign, state: str) -> tuple[float, float, float]:
     """Return first and last pinion angle at which the contact meets pits [deg], and the largest lost length [mm]."""
-    teeth = all_teeth(draw_specimen(config, 0))[0]
+    teeth = all_teeth(config.gearbox(0))[0]
     pair, damage = teeth.pair, teeth.damage(STATES.index(state))
     pits = pits_of(damage, "pinion", damage[0].tooth)
     ends = [p.height_m + sign * p.semi_axis_profile_m for p in pits for sign in (-1, 1)]
@@ -71,18 +70,18 @@ def contact_extent(config: Config, state: str) -> tuple[float, float, float]:
     return float(first), float(last), 1e3 * float(contact_length_loss(pits, pair.face_width_m, heights).max())
 
 
-def row(name: str, config: Config, state: str) -> str:
+def row(name: str, config: SetDesign, state: str) -> str:
     """Return one line of the table."""
     healthy, pitted = curves(config, state)
     loss = healthy.mesh_stiffness_n_per_m - pitted.mesh_stiffness_n_per_m
     degrees = np.degrees(healthy.angle_rad)
     first, last, length = contact_extent(config, state)
-    area = flank_views(draw_specimen(config, 0), state=state)[0].area_mm2
+    area = flank_views(config.gearbox(0), state=state)[0].area_mm2
     behind = loss[(degrees > last + 0.01) & (degrees < 32.7)].max(initial=0.0)
     softer = np.nanmax(pitted.parts_m_per_n["contact"] - healthy.parts_m_per_n["contact"])
     relative = 100 * (loss / healthy.mesh_stiffness_n_per_m).max()
     cells = (
-        f"{flank_damage_table(draw_specimen(config, 0), state=state).num_rows}",
+        f"{flank_damage_table(config.gearbox(0), state=state).num_rows}",
         f"{area:.2f}",
         f"{length:.2f}",
         f"{loss.max() / 1e6:.2f}",
@@ -127,7 +126,7 @@ def main() -> None:
     FIGURES.mkdir(exist_ok=True)
     for group, cases in GROUPS.items():
         draw(cases, FIGURES / f"gallery_{group}.png")
-    save_flank_figure(flank_views(draw_specimen(load_config(PAPER), 0)), FIGURES / "gallery_flanks.png")
+    save_flank_figure(flank_views(load_config(PAPER).gearbox(0)), FIGURES / "gallery_flanks.png")
     print(
         "| case | pits | area [mm²] | largest lost contact length [mm] | largest ΔK [10⁶ N/m] | largest ΔK/K [%] "
         "| largest ΔK at [°] | contact on pits [°] | largest ΔK behind them [10⁶ N/m] "

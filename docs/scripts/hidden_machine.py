@@ -89,12 +89,11 @@ def machine(number: int, folder: Path) -> dict[str, Any]:
 def _with_own_path(found: dict[str, Any], folder: Path) -> dict[str, Any]:
     """Return the machine with the path of its first gearbox for all of them."""
     from siggen.dataset.table_file import write_table_file
-    from siggen.gearbox.draw import draw_specimen
 
     file = (folder / "path.parquet").resolve()
     if not file.exists():
         config = siggen.load_config({**found, "states": {"others": None, HEALTHY: {}}})
-        write_table_file(path_curves(draw_specimen(config, 0), config.mesh_harmonics).table, file)
+        write_table_file(path_curves(config.gearbox(0), config.config.mesh_harmonics).table, file)
     for sensor in filter(None, found["sensors"].values()):
         sensor |= {"place": "casing", "path": {"file": str(file)}}
     return found

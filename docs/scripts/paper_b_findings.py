@@ -9,7 +9,6 @@ from matplotlib.ticker import NullFormatter
 
 from siggen.checks.loading import load_config
 from siggen.config import read_yaml
-from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import planned_record
 from siggen.record.quantities import internal_quantities
 from siggen.record.simulation import record_response
@@ -97,7 +96,7 @@ def runs(states, speeds_hz, duration_s, *overrides, fs_hz=54000.0):
         "fs_hz": fs_hz,
     }
     config = load_config(raw, [*CONSTANTS, "mesh_harmonics=5", *overrides])
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     for index, state in enumerate(states):
         built = specimen_state(specimen, index)
         for place, speed in enumerate(speeds_hz):
@@ -149,7 +148,7 @@ def order_amplitudes(signal, angle_rad, orders):
 def modes():
     """Return frequencies and names of the modes by what moves most, as `siggen inspect modes` lists them."""
     config = load_config(CONFIG, CONSTANTS)
-    found = specimen_modes(draw_specimen(config, 0))
+    found = specimen_modes(config.gearbox(0))
     shares = kinetic_shares(found)
     names = [" ".join(found.coordinates[i] for i in np.argsort(-row)[:2] if row[i] > 0.2) for row in shares]
     print("\n| mode | frequency [Hz] | share of the mesh | moves most |\n|---|---|---|---|")

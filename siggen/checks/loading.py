@@ -4,30 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from siggen.config import Config, apply_overrides, config_file, extended_files, inherited, parse, placed, read_yaml
-from siggen.config.gears import GearsSection
-from siggen.errors import ConfigError, Problem
+from siggen.errors import Problem
+from siggen.gearbox.source import ConfigSource, parsed
 
-
-def emptied_pairs(raw: Mapping[str, Any]) -> Iterator[Problem]:
-    """Yield the problem of an empty `gears.pairs` that someone wrote.
-
-    Parameters
-    ----------
-    raw : mapping
-        As written, without what it extends. A stored configuration states every key of `gears`, so an empty list there
-        is the default and nobody's slip.
-    """
-    gears = raw.get("gears")
-    if (
-        not isinstance(gears, Mapping)
-        or gears.get("pairs") not in ([], ())
-        or set(GearsSection.model_fields) <= set(gears)
-    ):
-        return
-    yield Problem("gears.pairs", "a list without a pair", "allowed: one pair at least, or null for none")
+if TYPE_CHECKING:
+    from siggen.gearbox.design import SetDesign
 
 
 def _beyond(told: Sequence[Problem], of_physics: Iterable[Problem]) -> Iterator[Problem]:
@@ -44,8 +27,8 @@ def _beyond(told: Sequence[Problem], of_physics: Iterable[Problem]) -> Iterator[
             yield problem
 
 
-def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str] = ()) -> Config:
-    """Return the configuration in a YAML file or mapping, with overrides such as `gears.module_mm=3.5` applied.
+def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str] = ()) -> SetDesign:
+    """Return the design of a set by a YAML file or mapping, with overrides such as `gears.module_mm=3.5` applied.
 
     Where there is no file of this path, the name of a preset such as `quickstart` stands for the one that siggen ships.
 
@@ -57,36 +40,31 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
         If anything is wrong with the configuration; names every problem of form and physics at once, each with the line
         of the file or the override that its value comes from.
     """
-    if isinstance(source, Mapping):
-        raw, folder, read_from, file = source, Path(), "configuration", None
-    else:
-        file = config_file(source)
-        raw, folder, read_from = read_yaml(file), file.parent, str(source)
+    written = ConfigSource.of(source, overrides)
     # They load the physics, which takes as long as all else: behind a file that is missing or no YAML.
     from siggen.checks.density_files import with_density_files
     from siggen.checks.mode_files import mode_problems, with_mode_file
     from siggen.checks.physical_problems import physical_problems
     from siggen.checks.response_files import response_problems, with_measured_responses
     from siggen.checks.state_problems import state_problems
+    from siggen.gearbox.design import SetDesign
     from siggen.gearbox.possible import PossibleGearbox
     from siggen.rig.sizes import with_sizes
 
-    with_densities, unusable = with_density_files(apply_overrides(inherited(raw, folder, read_from), overrides), folder)
-    filled, unread = with_measured_responses(with_densities, folder)
-    with_modes, unread_modes = with_mode_file(filled, folder)
+    with_densities, unusable = with_density_files(written.merged(), written.folder)
+    filled, unread = with_measured_responses(with_densities, written.folder)
+    with_modes, unread_modes = with_mode_file(filled, written.folder)
     sized, unsized = with_sizes(with_modes)
-    parsed = parse(sized)
-    written = [problem for own in (raw, apply_overrides({}, overrides)) for problem in emptied_pairs(own)]
-    gearbox = PossibleGearbox.of_sections(parsed.sections)
+    form = parsed(sized)
+    gearbox = PossibleGearbox.of_sections(form.sections)
     of_files = (*response_problems(gearbox), *mode_problems(gearbox))
-    of_physics = [*physical_problems(gearbox), *([] if parsed.problems else state_problems(gearbox)), *of_files]
-    told = [*written, *parsed.problems, *unread, *unread_modes, *unusable, *unsized]
-    problems = [*told, *_beyond(told, map(parsed.names.problem, of_physics))]
-    if parsed.config is not None and not problems:
+    of_physics = [*physical_problems(gearbox), *([] if form.problems else state_problems(gearbox)), *of_files]
+    told = [*written.emptied_pairs(), *form.problems, *unread, *unread_modes, *unusable, *unsized]
+    problems = [*told, *_beyond(told, map(form.names.problem, of_physics))]
+    if form.config is not None and not problems:
         from siggen.checks.quantity_names import quantity_problems
 
         problems = quantity_problems(gearbox)
-    if parsed.config is None or problems:
-        files = () if file is None else extended_files(file)
-        raise ConfigError(placed(problems, files, overrides), read_from + (" with overrides" if overrides else ""))
-    return parsed.config
+    if form.config is None or problems:
+        raise written.refusal(problems)
+    return SetDesign(form.config)

@@ -15,6 +15,7 @@ from operator import mul
 
 from siggen.dynamics.structure.steel_disc import STEEL_DENSITY_KG_M3, disc_inertia_kg_m2, disc_mass_kg
 from siggen.errors import counted
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.mode_table import mode_table
 from siggen.gearbox.planetary import RIM_MODULES
 from siggen.gearbox.possible import PossibleGearbox
@@ -316,7 +317,8 @@ def _empty_splits(gearbox: PossibleGearbox) -> Iterator[str]:
     if config.splits.by != "pair":
         return
     pairs = min(len(config.gears.pairs), config.specimens)
-    there = {split_of(config, specimen) for specimen in range(pairs)}
+    design = SetDesign(config)
+    there = {split_of(design, specimen) for specimen in range(pairs)}
     empty = [name for name in SPLITS if getattr(config.splits, name) and name not in there]
     if empty:
         yield (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from siggen.errors import counted
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.keys.number import bounds
 from siggen.planning.plan import specimen_count
@@ -16,7 +17,7 @@ WINDOW_TURNS, FEWEST_WINDOWS = 8, 2
 def size_notes(gearbox: PossibleGearbox) -> Iterator[str]:
     """Yield a sentence on each."""
     config = gearbox.config
-    tested = specimen_count(config, "test")
+    tested = specimen_count(SetDesign(config), "test")
     if tested < FEWEST_TESTED and config.splits.by != "pair":
         share, block = config.splits.test, config.splits.train + config.splits.validation + config.splits.test
         more = f"specimens: {-(-FEWEST_TESTED * block // share)} or more" if share else "a share of splits.test"

@@ -32,8 +32,8 @@ def export_model(
 
     check_model_file(out)
     with working("simulating the record"):
-        config, drawn, planned = chosen_record(source, record, overrides or ())
-        text = json.dumps(config.canonical(), sort_keys=True)
-        model = exported_model(drawn, planned, identity=config.identity, configuration=text)
+        design, drawn, planned = chosen_record(source, record, overrides or ())
+        text = json.dumps(design.canonical(), sort_keys=True)
+        model = exported_model(drawn, planned, identity=design.identity, configuration=text)
     write_model(model, out)
     echo(str(out))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from siggen.config import Config
+    from siggen.gearbox.design import SetDesign
     from siggen.gearbox.specimen import Specimen
 
 
@@ -21,7 +21,7 @@ class GearboxChoice:
         str | None, typer.Option("--stage", help="Which mesh: the name of a further stage; by default the first one.")
     ] = None
 
-    def drawn(self, config: Config) -> tuple[Specimen, int]:
+    def drawn(self, design: SetDesign) -> tuple[Specimen, int]:
         """Return the gearbox, and the number of the chosen mesh, 0 for the first one.
 
         Raises
@@ -29,8 +29,7 @@ class GearboxChoice:
         UsageError
             If the gearbox has no stage of that name.
         """
-        from siggen.gearbox.draw import draw_specimen
         from siggen.views.chosen_mesh import chosen_mesh
 
-        gearbox = draw_specimen(config, self.specimen)
+        gearbox = design.gearbox(self.specimen)
         return gearbox, chosen_mesh(gearbox, self.stage, "--stage")

@@ -56,7 +56,6 @@ def generate(
     from siggen.checks.plausibility import implausible
     from siggen.engines.processes import default_workers
     from siggen.errors import EXIT_RECORDS_FAILED
-    from siggen.gearbox.possible import PossibleGearbox
     from siggen.sets.compilation import compilation_text
     from siggen.sets.generation import generate as generate_set
     from siggen.sets.parts import generate_part, part_of
@@ -64,10 +63,10 @@ def generate(
     loaded = load_config(config, overrides or ())
     chosen = None if part is None else part_of(part)
     with run_shown(log_json, out) as shown:
-        for sentence in implausible(PossibleGearbox(loaded)):
+        for sentence in implausible(loaded.possible):
             shown.say(f"implausible: {sentence}")
         workers = default_workers() if engine.workers is None else engine.workers
-        if text := compilation_text(loaded.dynamics.method, workers):
+        if text := compilation_text(loaded.method, workers):
             shown.say(text)
         (runner, count), progress = engine.runner(), shown.progress
         told: dict[str, Any] = {"events": shown.events, "allowed_loss": engine.allowed_loss}

@@ -77,11 +77,10 @@ def init(
     from siggen.checks.face_accuracy import covering_classes
     from siggen.checks.loading import load_config
     from siggen.checks.plausibility import implausible
-    from siggen.config import inherited, parse_yaml
     from siggen.config.expert_keys import schema_text
     from siggen.errors import UsageError
     from siggen.file_writing import write_file
-    from siggen.gearbox.possible import PossibleGearbox
+    from siggen.keys.yaml_source import parse_yaml
     from siggen.rig.rig_answers import QUESTIONS, missing_answers, refuse_missing, rig_of
     from siggen.rig.rig_text import SCHEMA_FILE, rig_text
 
@@ -95,12 +94,12 @@ def init(
     rig, proposals = rig_of(answers, sensors, damage=damage, severities=severities)
     rig = replace(rig, accuracy_classes=covering_classes(rig))
     text = rig_text(rig, _name(out), base, proposals)
-    config = load_config(inherited(parse_yaml(text, str(out))))  # what is refused is never written
+    design = load_config(parse_yaml(text, str(out)))  # what is refused is never written
     write_file(out.with_name(SCHEMA_FILE), schema_text())
     write_file(out, text)  # last: once it is there, this command refuses
     for option, sentence in proposals.items():
         echo(f"--{option} was not given; proposed: {sentence}", err=True)
-    for sentence in implausible(PossibleGearbox(config)):
+    for sentence in implausible(design.possible):
         echo(f"implausible: {sentence}", err=True)
     echo(f"next: siggen plan {out} (tries it: which records would be lost); siggen generate {out} ...", err=True)
     echo(str(out))

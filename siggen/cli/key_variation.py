@@ -6,14 +6,13 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-from siggen.config import Config
 from siggen.errors import UsageError
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.keys.problems import nearest
 from siggen.views.stiffness_curves import StiffnessCurve, stiffness_curves
 
 
-def varied(text: str, config: Config) -> Iterator[tuple[str, list[str], int]]:
+def varied(text: str, design: SetDesign) -> Iterator[tuple[str, list[str], int]]:
     """Yield label, overrides and state of every value of `KEY=1,1.9,2.8`; the state keeps its keys, and grows no more.
 
     Raises
@@ -26,25 +25,25 @@ def varied(text: str, config: Config) -> Iterator[tuple[str, list[str], int]]:
     if not key or len(values) < 2:
         allowed = "KEY=VALUES with at least two values, such as states.moderate.damage.first_height_mm=1,1.9,2.8"
         raise UsageError(f"--vary: received '{text}'; allowed: {allowed}")
-    states = config.state_names
+    states = design.state_names
     own = re.match(r"states\.([^.]+)\.", key)
     name = own[1] if own else states[-1]
     if name not in states:
         raise UsageError(f"--vary: received state '{name}'; allowed: {', '.join(states)}{nearest(name, states)}")
     state = states.index(name)
-    milder = config.states[state].grows if own else None
+    milder = design.config.states[state].grows if own else None
     alone = [] if milder is None else [f"states.{name}.grows=null", f"states.{name}.like={milder}"]
     for value in values:
         yield f"{key}={value}", [*alone, f"{key}={value}"], state
 
 
 def varied_curves(
-    loaded: Iterable[tuple[str, Config, int]], specimen_id: int, torque_nm: float, mesh: int
+    loaded: Iterable[tuple[str, SetDesign, int]], specimen_id: int, torque_nm: float, mesh: int
 ) -> list[StiffnessCurve]:
     """Return the curve of a mesh in the first state, then in the varied state at each value, under its label."""
     found: list[StiffnessCurve] = []
-    for label, config, state in loaded:
-        names = (*(() if found else config.state_names[:1]), config.state_names[state])
-        curves = stiffness_curves(draw_specimen(config, specimen_id), torque_nm=torque_nm, states=names, mesh=mesh)
+    for label, design, state in loaded:
+        names = (*(() if found else design.state_names[:1]), design.state_names[state])
+        curves = stiffness_curves(design.gearbox(specimen_id), torque_nm=torque_nm, states=names, mesh=mesh)
         found += [*curves[:-1], replace(curves[-1], state=label)]
     return found

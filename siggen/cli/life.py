@@ -12,7 +12,7 @@ from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.working import working
 
 if TYPE_CHECKING:
-    from siggen.config import Config
+    from siggen.gearbox.design import SetDesign
 
 
 def life(
@@ -53,7 +53,7 @@ def life(
     _print(found)
 
 
-def _content(config: Config, specimen: int) -> dict[str, Any]:
+def _content(design: SetDesign, specimen: int) -> dict[str, Any]:
     """Return the unit and its inspections, each with its pitted teeth.
 
     Raises
@@ -64,11 +64,11 @@ def _content(config: Config, specimen: int) -> dict[str, Any]:
     from siggen.errors import UsageError
     from siggen.sets.drawn import life_rows
 
-    if config.life is None:
-        raise UsageError(f"{config.name} has no section life; allowed: a configuration with one, such as fleet")
-    if specimen >= config.specimens:
-        raise UsageError(f"--specimen {specimen}: allowed: 0 to {config.specimens - 1}")
-    rows = life_rows(config, specimen)
+    if not design.lives:
+        raise UsageError(f"{design.name} has no section life; allowed: a configuration with one, such as fleet")
+    if specimen >= design.specimens:
+        raise UsageError(f"--specimen {specimen}: allowed: 0 to {design.specimens - 1}")
+    rows = life_rows(design, specimen)
     inspections = [
         {**row, "teeth": [one for one in rows["teeth"] if one["inspection"] == row["inspection"]]}
         for row in rows["inspections"]
@@ -76,17 +76,13 @@ def _content(config: Config, specimen: int) -> dict[str, Any]:
     return {"unit": rows["units"][0], "inspections": inspections}
 
 
-def _write(file: Path, config: Config, specimen: int) -> None:
-    from siggen.config import yaml_text
+def _write(file: Path, design: SetDesign, specimen: int) -> None:
     from siggen.errors import UsageError
     from siggen.file_writing import write_file
-    from siggen.gearbox.configured import gearbox_config
 
     if file.exists():
         raise UsageError(f"--as-states {file}: is there already; give a new file")
-    states = gearbox_config(config, specimen).states
-    listed = config.model_copy(update={"life": None, "states": states})
-    write_file(file, yaml_text(listed.canonical()))
+    write_file(file, design.listed(specimen).text)
 
 
 def _print(found: dict[str, Any]) -> None:

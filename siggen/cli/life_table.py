@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
     from rich.table import Table
 
-    from siggen.config import Config
+    from siggen.gearbox.design import SetDesign
     from siggen.gearbox.lived import Lived
     from siggen.sets.record_cost import SetCost
 
@@ -19,15 +19,14 @@ MOST_LIVES = 12
 ENDS = {"first_pit": "first pit", "rated": "rated damage", "functional": "functional end"}
 
 
-def life_summary(config: Config) -> dict[str, Any] | None:
+def life_summary(design: SetDesign) -> dict[str, Any] | None:
     """Return quantiles of what ends the lives of the first gearboxes of a set; None for a set of states."""
-    if config.life is None:
+    life = design.config.life
+    if life is None:
         return None
     import numpy as np
 
-    from siggen.gearbox.configured import gearbox_life
-
-    lives = [gearbox_life(config, i) for i in range(min(config.specimens, MOST_LIVES))]
+    lives = [design.life(i) for i in range(min(design.specimens, MOST_LIVES))]
 
     def spread(values: list[float]) -> list[float]:
         return [float(value) for value in np.quantile(values, QUANTILES)]
@@ -42,8 +41,8 @@ def life_summary(config: Config) -> dict[str, Any] | None:
         "inspections": spread([len(one.ages_h) for one in lives]),
         "mean_inspections": sum(len(one.ages_h) for one in lives) / len(lives),
         "pitted_inspections": _pitted(lives) / max(sum(len(one.ages_h) for one in lives), 1),
-        "history_h": lives[0].clock.round_h if config.life.history else None,
-        "schedule_h": config.life.interval_h * (config.life.most - 1),
+        "history_h": lives[0].clock.round_h if life.history else None,
+        "schedule_h": life.interval_h * (life.most - 1),
         "failed": sum(one.event == "failed" for one in lives),
         "pitted_in_schedule": sum(one.observed_h > age for one, age in zip(lives, ends["first_pit"], strict=True)),
     }
@@ -97,15 +96,15 @@ def history_text(summary: dict[str, Any]) -> str:
     return f"{said}: it begins again {int(schedule_h // history_h)} times" if history_h <= schedule_h else said
 
 
-def cost_summary(cost: SetCost, summary: dict[str, Any], config: Config) -> dict[str, Any]:
+def cost_summary(cost: SetCost, summary: dict[str, Any], design: SetDesign) -> dict[str, Any]:
     """Return the CPU hours of a set, and what they were worked out from."""
     from dataclasses import asdict
 
     records = summary["records"]
-    damaged = config.specimens * (len(config.states) - 1)
+    damaged = design.specimens * (design.state_count - 1)
     if summary["life"] is not None:
         damaged = round(records * summary["life"]["pitted_inspections"])
-    hours = cost.hours(config.specimens, damaged, records, config.duration_s)
+    hours = cost.hours(design.specimens, damaged, records, design.duration_s)
     return {"cpu_hours": hours, **asdict(cost)}
 
 

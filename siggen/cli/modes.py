@@ -42,12 +42,11 @@ def modes(
 
     if out is not None:
         check_table_file(out)
-    from siggen.gearbox.draw import draw_specimen
     from siggen.views.natural_modes import specimen_modes
 
     png = picture.place("modes")
     with working("computing natural modes"):
-        found = specimen_modes(draw_specimen(load_config(config, overrides or ()), specimen))
+        found = specimen_modes(load_config(config, overrides or ()).gearbox(specimen))
     if as_json:
         echo_json({"mesh_stiffness_n_per_m": found.mesh_stiffness_n_per_m, "modes": found.table.to_pylist()})
     else:

@@ -53,13 +53,12 @@ def path(
 
     if out is not None:
         check_table_file(out)
-    from siggen.gearbox.draw import draw_specimen
     from siggen.views.path_curves import path_curves
 
     png = picture.place("path")
     with working("computing transfer paths"):
         loaded = load_config(config, overrides or ())
-        found = path_curves(draw_specimen(loaded, specimen), loaded.mesh_harmonics)
+        found = path_curves(loaded.gearbox(specimen), loaded.config.mesh_harmonics)
     if as_json:
         echo_json(_facts(found))
     else:

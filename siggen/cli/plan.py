@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from siggen.config import Config
+    from siggen.gearbox.design import SetDesign
     from siggen.gearbox.possible import PossibleGearbox
     from siggen.sets.trial import SetTrial
 
@@ -87,12 +88,12 @@ def plan(
     _print_trial(console, found)
 
 
-def _cost(config: Config, summary: dict[str, Any], tried: SetTrial | None) -> dict[str, Any] | None:
+def _cost(design: SetDesign, summary: dict[str, Any], tried: SetTrial | None) -> dict[str, Any] | None:
     """Return the CPU hours of a set and how long that is here; None where nothing may be tried."""
-    return None if tried is None else cost_summary(tried.cost, summary, config)
+    return None if tried is None else cost_summary(tried.cost, summary, design)
 
 
-def _tried(config: Config, gearboxes: int | None) -> SetTrial | None:
+def _tried(design: SetDesign, gearboxes: int | None) -> SetTrial | None:
     """Return what short records of some gearboxes lose; a line on stderr tells how far it is."""
     from siggen.cli.working import stepwise
     from siggen.sets import trial
@@ -100,7 +101,7 @@ def _tried(config: Config, gearboxes: int | None) -> SetTrial | None:
     if gearboxes == 0:
         return None
     with stepwise("trying short records (--trial 0 leaves this out)") as progress:
-        return trial.trial(config, gearboxes, progress)
+        return trial.trial(design, gearboxes, progress)
 
 
 def _print_trial(console: Console, found: SetTrial | None) -> None:
@@ -146,7 +147,7 @@ def _print_trial(console: Console, found: SetTrial | None) -> None:
         console.print(printable(sentence), highlight=False, markup=False, style="yellow")
 
 
-def plan_summary(config: Config) -> dict[str, Any]:
+def plan_summary(design: SetDesign) -> dict[str, Any]:
     """Return counts, sizes and ranges of the set that a configuration describes, as JSON would hold them."""
     from siggen.planning.plan import (
         SPLITS,
@@ -157,8 +158,9 @@ def plan_summary(config: Config) -> dict[str, Any]:
         specimens_per_shard,
     )
 
-    specimens = {split: specimen_count(config, split) for split in SPLITS}
-    lives, notes = life_summary(config), _notes(config)
+    config = design.config
+    specimens = {split: specimen_count(design, split) for split in SPLITS}
+    lives, notes = life_summary(design), _notes(design)
     per_state = len(config.operating_points) * config.repeats
     inspections = config.state_count if lives is None else lives["mean_inspections"]
     records = round(config.specimens * inspections) * per_state
@@ -180,26 +182,25 @@ def plan_summary(config: Config) -> dict[str, Any]:
         "states": _state_counts(config, specimens),
         "severity_share": _severity_shares(config),
         "life": lives,
-        "shards_of_split": {split: shard_count(config, split) for split in SPLITS},
-        "specimens_per_full_shard": specimens_per_shard(config),
-        "rows_per_group": rows_per_group(config),
+        "shards_of_split": {split: shard_count(design, split) for split in SPLITS},
+        "specimens_per_full_shard": specimens_per_shard(design),
+        "rows_per_group": rows_per_group(design),
         "raw_bytes": raw_bytes,
-        "estimated_bytes_on_disk": estimated_bytes(config, records),
+        "estimated_bytes_on_disk": estimated_bytes(design, records),
         **notes,
         "implausible": [*notes["implausible"], *life_doubts(lives)],
     }
 
 
-def _notes(config: Config) -> dict[str, Any]:
+def _notes(design: SetDesign) -> dict[str, Any]:
     """Return how it varies, and what a user should know about it, in words."""
     from siggen.checks.damage_notes import damage_notes, state_notes, torque_notes
     from siggen.checks.plausibility import implausible
     from siggen.checks.shaft_notes import shaft_notes
     from siggen.checks.size_notes import size_notes
     from siggen.checks.variation_notes import reversal_notes, variation_notes
-    from siggen.gearbox.possible import PossibleGearbox
 
-    gearbox = PossibleGearbox(config)
+    gearbox = design.possible
     notes = {
         "size_notes": [*size_notes(gearbox)],
         "stiffness_notes": _of_every_pair(gearbox, lambda own: own.stiffness_notes),
@@ -209,7 +210,7 @@ def _notes(config: Config) -> dict[str, Any]:
         "state_notes": [*state_notes(gearbox)],
         "shaft_notes": _of_every_pair(gearbox, shaft_notes),
     }
-    return {"manufacture": _manufacture(config), **notes, "implausible": implausible(gearbox)}
+    return {"manufacture": _manufacture(design.config), **notes, "implausible": implausible(gearbox)}
 
 
 def _of_every_pair(gearbox: PossibleGearbox, notes: Callable[[PossibleGearbox], Iterable[str]]) -> list[str]:

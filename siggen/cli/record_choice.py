@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from siggen.config import Config
+    from siggen.gearbox.design import SetDesign
     from siggen.gearbox.specimen import Specimen
     from siggen.planning.plan import PlannedRecord
 
 
-def chosen_record(source: Path, record: int, overrides: Sequence[str]) -> tuple[Config, Specimen, PlannedRecord]:
-    """Return the configuration of a file or folder, the gearbox of a record, and where that stands.
+def chosen_record(source: Path, record: int, overrides: Sequence[str]) -> tuple[SetDesign, Specimen, PlannedRecord]:
+    """Return the design of a file or folder, the gearbox of a record, and where that stands.
 
     Raises
     ------
@@ -22,17 +22,16 @@ def chosen_record(source: Path, record: int, overrides: Sequence[str]) -> tuple[
     """
     from siggen.checks.loading import load_config
     from siggen.errors import UsageError, counted
-    from siggen.gearbox.draw import draw_specimen
     from siggen.planning.plan import planned_record, record_ids_of
 
-    config = load_config(source / "config.yaml" if source.is_dir() else source, overrides)
-    count = config.specimens * config.records_per_specimen
+    design = load_config(source / "config.yaml" if source.is_dir() else source, overrides)
+    count = design.specimens * design.records_per_specimen
     if record >= count:
         raise UsageError(f"--record {record}: {source} has {counted(count, 'record')}, 0 to {count - 1}")
-    if record not in (ids := record_ids_of(config, record // config.records_per_specimen)):
+    if record not in (ids := record_ids_of(design, record // design.records_per_specimen)):
         raise UsageError(
             f"--record {record}: this gearbox fails, or is taken out, before; allowed: {ids[0]} to {ids[-1]}, or those "
             "of another one"
         )
-    planned = planned_record(config, record)
-    return config, draw_specimen(config, planned.specimen_id), planned
+    planned = planned_record(design, record)
+    return design, design.gearbox(planned.specimen_id), planned

@@ -31,10 +31,10 @@ def simulate(
 
     check_table_file(out)
     with working("simulating the record"):
-        config, drawn, planned = chosen_record(source, record, overrides or ())
+        design, drawn, planned = chosen_record(source, record, overrides or ())
         from siggen.record.internals import internals_table
 
         table = internals_table(drawn, planned, internals=internals)
-        table = table.replace_schema_metadata({**table.schema.metadata, "identity": config.identity})
+        table = table.replace_schema_metadata({**table.schema.metadata, "identity": design.identity})
     write_table_file(table, out)
     echo(str(out))

@@ -84,7 +84,6 @@ def tvms(
     from siggen.checks.loading import load_config
     from siggen.cli.key_variation import varied, varied_curves
     from siggen.dataset.table_file import write_table_file
-    from siggen.gearbox.possible import PossibleGearbox
     from siggen.views.stiffness_curves import (
         curve_table,
         static_torque_nm,
@@ -115,7 +114,7 @@ def tvms(
         with working("drawing the picture", compiles=False):
             save_stiffness_figure(curves, png, **asdict(further), title=meaning)
     echo(meaning, err=True)
-    possible = PossibleGearbox(usable)
+    possible = usable.possible
     for note in possible.meshes[mesh].stiffness_notes(possible.bending):
         echo(f"note: {note}", err=True)
     if out is not None:

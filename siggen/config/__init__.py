@@ -35,7 +35,7 @@ from siggen.config.stages import Stage
 from siggen.config.states import StateSection
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import SpeedVariation, TorqueVariationSection, Variation
-from siggen.config.yaml_source import STORED_NUMBERS, parse_yaml, read_yaml, yaml_text
+from siggen.keys.yaml_source import STORED_NUMBERS, parse_yaml, read_yaml, yaml_text
 
 __all__ = [
     "BLOCK",

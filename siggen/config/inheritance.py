@@ -8,11 +8,11 @@ from typing import Any
 
 from siggen.config.dynamics import ALIKE, RATED
 from siggen.config.presets import config_file
-from siggen.config.yaml_source import read_yaml
 from siggen.errors import ConfigError, Problem, UsageError
 from siggen.keys.data_file import is_file
 from siggen.keys.merging import merged
 from siggen.keys.problems import received_text
+from siggen.keys.yaml_source import read_yaml
 
 EXTENDS = "extends"
 REPLACED = ("gears", "planetary")

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import yaml
 
-from siggen.config.yaml_source import yaml_node
 from siggen.errors import Problem
 from siggen.keys.merging import REPLACING
+from siggen.keys.yaml_source import yaml_node
 
 MERGE = "tag:yaml.org,2002:merge"
 MOST_MERGES = 20

@@ -8,11 +8,11 @@ from typing import Any
 
 from siggen.config.dynamics import RATED
 from siggen.config.inheritance import without_sizes
-from siggen.config.yaml_source import yaml_value
 from siggen.errors import ConfigError, Problem
 from siggen.keys.by_name import BY_NAME, named_entries
 from siggen.keys.merging import BY_WORD, in_keys
 from siggen.keys.problems import nearest, received_text
+from siggen.keys.yaml_source import yaml_value
 
 FORM = "allowed: a path and a value, such as gears.module_mm=3.5 or operating_points.0.speed_hz=25"
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import pyarrow as pa
 import yaml
@@ -11,13 +10,11 @@ import yaml
 from siggen.columns.internals import internals_schema
 from siggen.columns.record import ChannelColumn, SetColumns, damage_schema, record_schema
 from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
-from siggen.dataset.card_making import channels_text, making, quantities_text
 from siggen.dataset.manifest import SPLITS
 from siggen.dataset.sidecar import Sidecar
 from siggen.errors import counted
-
-if TYPE_CHECKING:
-    from siggen.config import Config
+from siggen.gearbox.description import faults, faults_text, machine_word, making, tolerances_text
+from siggen.gearbox.design import SetDesign
 
 TAGS = (
     "synthetic",
@@ -30,68 +27,51 @@ TAGS = (
 SIZE_LIMITS = ((1_000, "n<1K"), (10_000, "1K<n<10K"), (100_000, "10K<n<100K"), (1_000_000, "100K<n<1M"))
 LARGEST_SIZE = "1M<n<10M"
 
-PERFECT_GEARS = """* **The gears have no manufacturing errors.** A healthy gearbox here has no sidebands around its mesh
-  harmonics except those of the noise, so healthy and faulty separate trivially, by almost any indicator. Do not read a
-  detection score on this set as one for real gearboxes, where pitch errors and run-out raise the same sidebands.
-  What the set can teach: the shape, order and growth of fault signatures, effects of speed, load, noise and position,
-  and whether a processing chain finds a signature that is known to be there.
-"""
 
-
-TOLERANCES = """* **Gears have manufacturing errors** within flank tolerance class {classes} of ISO 1328-1
-  (share used: {share}), every tooth its own: healthy records have sidebands too. {owner}
-"""
-OWNERS = {
-    "specimen": "All states of a specimen have the same gears, as on a rig before and after damage, so a difference "
-    "between\n  its states is the damage.",
-    "state": "Every state of a specimen has gears of its own from the same drawing, so no difference between states is "
-    "the\n  damage alone.",
-}
-
-
-def card(config: Config, sidecars: Sequence[Sidecar], columns: SetColumns) -> str:
+def card(design: SetDesign, sidecars: Sequence[Sidecar], columns: SetColumns) -> str:
     """Return the card as Markdown with YAML front matter that Hugging Face reads; the same set gives the same bytes."""
     splits = [split for split in SPLITS if any(sidecar.split == split for sidecar in sidecars)]
     rows = sum(sidecar.data.rows for sidecar in sidecars)
     sections = (
-        _front_matter(config, splits, rows, with_internals=bool(columns.quantities)),
-        _summary(config, columns.channels, rows),
-        _contents(config, sidecars, splits),
-        making(config),
-        _limits(config),
+        _front_matter(design, splits, rows, with_internals=bool(columns.quantities)),
+        _summary(design, columns.channels, rows),
+        _contents(design, sidecars, splits),
+        making(design),
+        _limits(design),
         _failures(sidecars),
         _columns("Columns of `data/`", record_schema(columns)),
         _columns("Columns of `damage/`", damage_schema(columns)),
         _internals(columns),
-        _loading(config, columns.channels[0].column, splits),
-        _identity(config, sidecars),
+        _loading(design, columns.channels[0].column, splits),
+        _identity(design, sidecars),
     )
     return "\n".join(section for section in sections if section)
 
 
-def faults(config: Config) -> tuple[str, ...]:
-    """Return the kinds of fault of a set, in the order of its states; none of a set of healthy gearboxes."""
-    if config.life is not None:
-        return tuple(section.words[0] for section in config.damages)
-    return tuple(dict.fromkeys(state.fault for state in config.states if state.faulty))
-
-
-def tags(config: Config) -> tuple[str, ...]:
+def tags(design: SetDesign) -> tuple[str, ...]:
     """Return the words by which repositories find a set."""
-    return (*TAGS, *(f"gear-{fault}" for fault in faults(config)))
+    return (*TAGS, *(f"gear-{fault}" for fault in faults(design)))
 
 
-def faults_text(config: Config) -> str:
-    """Return the kinds of fault as the words of a title."""
-    *first, last = faults(config) or ("healthy gears alone",)
-    return f"{', '.join(first)} and {last}" if first else last
+def quantities_text(channels: Sequence[ChannelColumn]) -> str:
+    """Return what the channels of a set hold."""
+    words = list(dict.fromkeys(channel.quantity for channel in channels))
+    return " and ".join(part for part in (", ".join(words[:-1]), words[-1]) if part)
 
 
-def _front_matter(config: Config, splits: Sequence[str], rows: int, *, with_internals: bool) -> str:
+def channels_text(channels: Sequence[ChannelColumn]) -> str:
+    """Return the channels with their places, by unit."""
+    by_unit: dict[str, list[str]] = {}
+    for channel in channels:
+        by_unit.setdefault(channel.unit, []).append(f"`{channel.name}` ({channel.place}, {channel.axis})")
+    return "; ".join(f"{', '.join(named)}, in {unit}" for unit, named in by_unit.items())
+
+
+def _front_matter(design: SetDesign, splits: Sequence[str], rows: int, *, with_internals: bool) -> str:
     internals = [_view("internals", {split: f"internals/{split}-*.parquet" for split in splits})]
     facts = {
-        "pretty_name": f"{config.name}: synthetic gearbox vibration, {faults_text(config)}",
-        "tags": list(tags(config)),
+        "pretty_name": f"{design.name}: synthetic gearbox vibration, {faults_text(design)}",
+        "tags": list(tags(design)),
         "size_categories": [next((size for limit, size in SIZE_LIMITS if rows < limit), LARGEST_SIZE)],
         "configs": [
             _view("signals", {split: f"data/{split}-*.parquet" for split in splits}, default=True),
@@ -108,26 +88,25 @@ def _view(name: str, paths: dict[str, str], *, default: bool = False) -> dict[st
     return {"config_name": name, **({"default": True} if default else {}), "data_files": files}
 
 
-def _summary(config: Config, channels: Sequence[ChannelColumn], rows: int) -> str:
+def _summary(design: SetDesign, channels: Sequence[ChannelColumn], rows: int) -> str:
     records = counted(rows, f"labelled {quantities_text(channels)} record")
-    what = "spur gear pair" if config.machine is None else "gearbox"
-    return f"""# {config.name}
+    return f"""# {design.name}
 
-{records} of a simulated {what}, {config.duration_s:g} s each at {config.fs_hz:g} Hz.
+{records} of a simulated {machine_word(design)}, {design.duration_s:g} s each at {design.fs_hz:g} Hz.
 Channels: {channels_text(channels)}. Every record is simulated from its own gearbox, state, speed, load and noise;
 none is a copy or a cut of another one. **The data are synthetic**: they were computed, not measured.
 """
 
 
-def _contents(config: Config, sidecars: Sequence[Sidecar], splits: Sequence[str]) -> str:
-    names = ["inspections"] if config.life is not None else list(config.state_names)
+def _contents(design: SetDesign, sidecars: Sequence[Sidecar], splits: Sequence[str]) -> str:
+    names = ["inspections"] if design.lives else list(design.state_names)
     lines = ["## Contents", "", f"| split | specimens | records | {' | '.join(names)} | MB |"]
     lines.append("|---" * (len(names) + 4) + "|")
     for split in splits:
         own = [sidecar for sidecar in sidecars if sidecar.split == split]
         specimens = sum(last - first + 1 for sidecar in own for first, last in sidecar.specimens)
-        rows_of = [sum(sidecar.rows_per_state[name] for sidecar in own) for name in config.state_names]
-        states = [str(count) for count in (rows_of if config.life is None else [_inspections(config, rows_of)])]
+        rows_of = [sum(sidecar.rows_per_state[name] for sidecar in own) for name in design.state_names]
+        states = [str(count) for count in (rows_of if not design.lives else [_inspections(design, rows_of)])]
         rows = sum(sidecar.data.rows for sidecar in own)
         size_mb = sum(sidecar.data.bytes for sidecar in own) / 1e6
         lines.append(f"| {split} | {specimens} | {rows} | {' | '.join(states)} | {size_mb:.1f} |")
@@ -142,26 +121,18 @@ def _contents(config: Config, sidecars: Sequence[Sidecar], splits: Sequence[str]
     )
 
 
-def _inspections(config: Config, records: Sequence[int]) -> int:
+def _inspections(design: SetDesign, records: Sequence[int]) -> int:
     """Return how many inspections records are of; each has them at every operating point, repeats included."""
-    return sum(records) // (len(config.operating_points) * config.repeats)
+    return sum(records) // (design.points * design.repeats)
 
 
-def _limits(config: Config) -> str:
-    """Say what follows from the gears being perfect, or how far they are from it."""
-    gears = _tolerances(config)
+def _limits(design: SetDesign) -> str:
+    gears = tolerances_text(design)
     return f"""## What it can teach, and what it cannot
 
 {gears}* No casing and no transfer path beyond the model above, no wear of other parts, no temperature.
 * A model that is trained here has to be tested on measurements before it is trusted on them.
 """
-
-
-def _tolerances(config: Config) -> str:
-    section = config.manufacture
-    if section is None:
-        return PERFECT_GEARS
-    return TOLERANCES.format(classes=section.classes_text, share=section.tolerance_share, owner=OWNERS[section.draw])
 
 
 def _failures(sidecars: Sequence[Sidecar]) -> str:
@@ -201,7 +172,7 @@ def _type_name(kind: pa.DataType) -> str:
     return f"list of {kind.value_type}" if isinstance(kind, pa.ListType) else str(kind)
 
 
-def _loading(config: Config, column: str, splits: Sequence[str]) -> str:
+def _loading(design: SetDesign, column: str, splits: Sequence[str]) -> str:
     split = splits[0]
     return f"""## Loading
 
@@ -219,7 +190,7 @@ signals = np.stack(frame["{column}"])                   # (rows, samples)
 
 import polars as pl
 labels = pl.read_parquet("metadata/{split}.parquet")
-frame = pl.scan_parquet("data/{split}-*.parquet").filter(pl.col("state") == "{config.state_names[-1]}").collect()
+frame = pl.scan_parquet("data/{split}-*.parquet").filter(pl.col("state") == "{design.state_names[-1]}").collect()
 
 import pyarrow.dataset as ds
 for batch in ds.dataset("data", format="parquet").to_batches(columns=["{column}"], batch_size=32):
@@ -235,14 +206,14 @@ Signals are `FixedSizeList<float32>`: every reader above keeps or restores their
 """
 
 
-def _identity(config: Config, sidecars: Sequence[Sidecar]) -> str:
+def _identity(design: SetDesign, sidecars: Sequence[Sidecar]) -> str:
     made_with = sorted({f"siggen {s.environment['siggen']}, numpy {s.environment['numpy']}" for s in sidecars})
-    specimens = counted(config.specimens, "specimen")
+    specimens = counted(design.specimens, "specimen")
     return f"""## Identity
 
 * Configuration: `config.yaml`; identity (SHA-256 of the configuration without the number of specimens):
-  `{config.identity}`
-* Seed {config.seed}, {specimens}; made with {"; ".join(made_with)}.
+  `{design.identity}`
+* Seed {design.seed}, {specimens}; made with {"; ".join(made_with)}.
 * Schema version {SCHEMA_VERSION}, simulation version {SIMULATION_VERSION}.
 * Every random number follows from seed, stage and owner, so `siggen generate config.yaml --out NEW` makes the same set
   again: bit for bit on the same CPU family and versions (`manifest.json`), elsewhere within a step of the converter.

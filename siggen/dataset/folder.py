@@ -3,30 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import yaml
 
-from siggen.config import parse, yaml_text
 from siggen.dataset.gate import manifest_facts
 from siggen.dataset.manifest import CONFIG, MANIFEST
 from siggen.dataset.object_name import CHECKSUMS
 from siggen.dataset.shard_index import promised_files
 from siggen.dataset.storage import Storage
-from siggen.errors import DatasetError, VerificationError
-
-if TYPE_CHECKING:
-    from siggen.config import Config
+from siggen.errors import ConfigError, DatasetError, VerificationError
+from siggen.gearbox.design import SetDesign, design_of
 
 NAMED_DIFFERENCES = 5
 
 
-def config_bytes(config: Config) -> bytes:
-    """Return config.yaml: the configuration with all its defaults, in the order in which they are declared."""
-    return yaml_text(config.canonical()).encode()
-
-
-def is_finished(storage: Storage, config: Config) -> bool:
+def is_finished(storage: Storage, design: SetDesign) -> bool:
     """Tell whether a folder holds the whole set already; False if it is empty or holds a part of this set.
 
     Only sizes are compared: `siggen verify` reads every byte.
@@ -40,7 +32,7 @@ def is_finished(storage: Storage, config: Config) -> bool:
     if not storage.exists(CONFIG):
         _refuse_strangers(storage)
         return False
-    _refuse_other_set(storage, config)
+    _refuse_other_set(storage, design)
     return storage.exists(MANIFEST) and _has_every_file(storage)
 
 
@@ -68,17 +60,17 @@ def _refuse_strangers(storage: Storage) -> None:
         )
 
 
-def _refuse_other_set(storage: Storage, config: Config) -> None:
+def _refuse_other_set(storage: Storage, design: SetDesign) -> None:
     stored = storage.get(CONFIG)
-    if stored == config_bytes(config):
+    if stored == design.text.encode():
         return
     try:
         found = yaml.safe_load(stored)
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise DatasetError(f"{storage.location}/{CONFIG} cannot be read ({error}); name a new folder") from error
-    if _is_same_set(found, config):
+    if _is_same_set(found, design):
         return
-    differences = list(_differences("", found, config.canonical()))
+    differences = list(_differences("", found, design.canonical()))
     if [path for path, _, _ in differences] == ["specimens"]:
         before, now = differences[0][1:]
         raise DatasetError(
@@ -93,10 +85,13 @@ def _refuse_other_set(storage: Storage, config: Config) -> None:
     raise DatasetError("\n".join([f"{storage.location} holds another data set; name a new folder", *listed]))
 
 
-def _is_same_set(found: Any, config: Config) -> bool:
+def _is_same_set(found: Any, design: SetDesign) -> bool:
     """Tell whether a stored configuration describes this set in another form."""
-    stored = parse(found).config if isinstance(found, Mapping) else None
-    return stored is not None and (stored.identity, stored.specimens) == (config.identity, config.specimens)
+    try:
+        stored = design_of(found if isinstance(found, Mapping) else {}, CONFIG)
+    except ConfigError:
+        return False
+    return (stored.identity, stored.specimens) == (design.identity, design.specimens)
 
 
 def _differences(path: str, before: Any, now: Any) -> list[tuple[str, Any, Any]]:

@@ -23,11 +23,11 @@ from siggen.dataset.promises import Promises
 from siggen.dataset.shard_index import ShardIndex, promised_files
 from siggen.dataset.storage import Storage
 from siggen.dataset.storage_at import storage_at
-from siggen.errors import DatasetError, UsageError, counted
+from siggen.errors import ConfigError, DatasetError, UsageError, counted
 from siggen.keys.column import Column, Role
 
 if TYPE_CHECKING:
-    from siggen.config.gears import ToothForm, Wheel
+    from siggen.gearbox.design import FlankLaw
 
 _Loader = yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
 """The safe one, by libyaml where PyYAML was built with it."""
@@ -132,22 +132,17 @@ class Dataset:
         return {column.of: name for name, column in self._listed.items() if column.quantity == quantity}
 
     @cached_property
-    def gears(self) -> dict[str, tuple[ToothForm, Wheel]]:
-        """What both gears of its mesh share, and the gear itself, by its name; no ring.
+    def gears(self) -> dict[str, FlankLaw]:
+        """What the configuration says of the flanks of every gear, by its name; no ring.
 
         Empty for a configuration of another version.
         """
-        from siggen.config import parse
+        from siggen.gearbox.design import design_of
 
-        config = parse(self.config).config
-        if config is None:
+        try:
+            return design_of(self.config, CONFIG).flanks
+        except ConfigError:
             return {}
-        forms = (config.gears, *(stage.gears for stage in config.stages))
-        return {
-            gear.word: (form, wheel)
-            for mesh, form in zip(config.names.meshes, forms, strict=False)
-            for gear, wheel in zip(mesh.gears, (form.pinion, form.gear), strict=True)
-        }
 
     @cached_property
     def _listed(self) -> dict[str, ListedColumn]:

@@ -83,6 +83,7 @@ def _drawn(config: Config, own: Config, specimen_id: int) -> Specimen:
         background=drawn_background(own, specimen_id),
         channels=tuple(drawn_channels(own, specimen_id, sensors)),
         points=points,
+        rated_nm=rated_nm(own.dynamics, own.operating_points),
         damages=config.damages,
         labels=gearbox_labels(config, specimen_id, meshes[0].pair, law.friction.oil, sensors),
         life=None if config.life is None else gearbox_life(config, specimen_id),
@@ -141,5 +142,5 @@ def draw_operating_point(config: Config, specimen_id: int, operating_point_id: i
     return OperatingPoint(
         speed_hz=at(ranges.speed_hz, uniform("speed_hz")),
         torque_nm=at(ranges.torque_nm, uniform("torque_nm")),
-        variation=drawn_variation(own.variation, rated_nm(own.dynamics, own.operating_points), uniform),
+        variation=drawn_variation(own.variation, uniform),
     )

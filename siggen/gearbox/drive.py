@@ -23,7 +23,6 @@ class SpeedLevels:
     ripple_once: float
     ripple_twice: float
     slip: float
-    rated_torque_nm: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,13 +41,13 @@ class UnbalanceLevels:
     phases_rad: tuple[float, ...]
 
 
-def drawn_variation(law: Variation, rated_nm: float, uniform: Callable[[str], float]) -> PointVariation | None:
-    """Return the variation at an operating point, with slip by the rated torque [N m]; None where nothing varies."""
+def drawn_variation(law: Variation, uniform: Callable[[str], float]) -> PointVariation | None:
+    """Return the variation at an operating point; None where nothing varies."""
     if not law.active:
         return None
     section = draw(law, uniform, "variation")
     torque = in_si(section.torque)
-    speed = SpeedLevels(**in_si(section.speed), rated_torque_nm=rated_nm)
+    speed = SpeedLevels(**in_si(section.speed))
     return PointVariation(speed, TorqueSettings(slow_rms=torque.pop("random_rms"), **torque))
 
 

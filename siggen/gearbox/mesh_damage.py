@@ -7,18 +7,23 @@ spall hides is no damage of its own any more. Nor is what lies wholly on metal t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
+from pydantic import TypeAdapter, ValidationError
+
 from siggen.config import Config, StateSection
+from siggen.errors import ConfigError
 from siggen.faults.fault import Fault
 from siggen.faults.growth import Growth
+from siggen.faults.registry import DamageSections
 from siggen.gears.damage.flank_loss import takes_from_flanks, with_outlines
 from siggen.gears.damage.part import Part, Parts
 from siggen.gears.damage.tooth_damage import goes_through
 from siggen.gears.damage.wear import LoadAtRest
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.keys.problems import section_problems
 from siggen.names import EITHER, Names
 
 LoadsAtRest: TypeAlias = Callable[[float], LoadAtRest]
@@ -64,6 +69,25 @@ def on_mesh(damage: Fault, mesh: str, names: Names) -> Fault | None:
     hit = [flanks.get(gear, (None, "")) for gear in damage.hit_gears]
     here = all(name == mesh and not (damage.one_flank and role == EITHER) for name, role in hit)
     return damage.with_gears(lambda gear: flanks[gear][1]) if here else None
+
+
+def damage_sections(listed: Sequence[Mapping[str, object]]) -> tuple[Fault, ...]:
+    """Return damage by the entries of a file.
+
+    Raises
+    ------
+    ConfigError
+        If they are wrong, with paths from `damages` on.
+    """
+    if not listed:
+        return ()
+    try:
+        return tuple(TypeAdapter(DamageSections).validate_python(listed))  # type: ignore[arg-type]
+    except ValidationError as error:
+        problems = section_problems(StateSection, error.errors(include_url=False), ("damage",))
+        raise ConfigError(
+            [replace(one, path=f"damages{one.path.removeprefix('damage')}") for one in problems]
+        ) from None
 
 
 @dataclass(frozen=True, slots=True)

@@ -132,6 +132,7 @@ class Specimen:
     background : what its machine does beside its meshing teeth
     channels : of its sensors
     points : at which it is measured
+    rated_nm : torque at which its motor slips as the file says
     damages : laws of the damage of all states of its set
     labels : what its set says of it as a whole
     life : how its teeth pitted, of a set that runs to failure
@@ -153,6 +154,7 @@ class Specimen:
     background: DrawnBackground | None
     channels: tuple[DrawnChannel, ...]
     points: tuple[OperatingPoint, ...]
+    rated_nm: float
     damages: tuple[Fault, ...]
     labels: Labels
     life: Lived | None

@@ -5,7 +5,8 @@ from __future__ import annotations
 from siggen.config import Dynamics, Friction
 from siggen.dynamics.mesh.damping import DampingLaw
 from siggen.dynamics.mesh.tooth_law import FlankFriction, ToothLaw
-from siggen.keys.number import constant
+from siggen.keys.drawing import draw
+from siggen.keys.number import MIDDLE, constant
 
 
 def tooth_law(dynamics: Dynamics) -> ToothLaw:
@@ -26,6 +27,11 @@ def tooth_law(dynamics: Dynamics) -> ToothLaw:
         tilts=dynamics.shafts is not None,
         friction=_flank_friction(dynamics.friction, dynamics.rubbing),
     )
+
+
+def typical_tooth_law() -> ToothLaw:
+    """Return how teeth push and rub where a file says nothing of it, at the middle of what is drawn."""
+    return tooth_law(draw(Dynamics(), lambda _: MIDDLE, "dynamics"))
 
 
 def _flank_friction(section: Friction, model: str) -> FlankFriction:

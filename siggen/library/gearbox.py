@@ -11,11 +11,8 @@ from typing import Any
 from siggen.checks.loading import load_config
 from siggen.columns.drivetrain import GearTrain, gear_train
 from siggen.columns.record import label_columns
-from siggen.config import Config
-from siggen.config.planetary import RING
 from siggen.errors import UsageError
-from siggen.gearbox.configured import inspection_count
-from siggen.gearbox.draw import draw_operating_point, draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.specimen import Specimen
 from siggen.keys.column import Column
 from siggen.library.arguments import finite, of_kind, one_of, refused, saying
@@ -95,7 +92,7 @@ class Gearbox:
     number: int
     states: tuple[State, ...]
     points: tuple[Point, ...]
-    _config: Config
+    _design: SetDesign
     _added: tuple[State, ...] = ()
     sensors: tuple[Sensor, ...] = ()
 
@@ -111,12 +108,12 @@ class Gearbox:
     @property
     def seed(self) -> int:
         """Where all that is drawn begins."""
-        return self._config.seed
+        return self._design.seed
 
     @property
     def channels(self) -> tuple[str, ...]:
         """Names of what its sensors record."""
-        return (*self._config.channels, *(one.name for one in self._passed))
+        return (*self._design.channels, *(one.name for one in self._passed))
 
     @property
     def readable(self) -> tuple[str, ...]:
@@ -126,7 +123,7 @@ class Gearbox:
     @property
     def cases(self) -> tuple[Case, ...]:
         """What its set holds of it, in the order of the records; none where it is of no set."""
-        repeats = range(self._config.repeats)
+        repeats = range(self._design.repeats)
         points = range(len(self.points))
         return tuple(Case(state.name, point, k) for state in self.states for point in points for k in repeats)
 
@@ -185,14 +182,14 @@ class Gearbox:
     def _with_state(self, state: State) -> Gearbox:
         if state.name in {one.name for one in self.states}:
             raise refused("State.name", repr(state.name), "a name that this gearbox has not yet")
-        if self._config.life is not None:
+        if self._design.lives:
             raise refused("more", repr(state), "no states for a gearbox that lives and fails by its set")
         entry = self._entry(state)
-        canonical, key = self._config.canonical(), f"states.{state.name}"
+        canonical, key = self._design.canonical(), f"states.{state.name}"
         named = {f"{key}.damage": f"damages of {state.name}", f"{key}: received the name": "State.name: received"}
         with saying({**named, key: f"state {state.name}"}):
-            config = load_config({**canonical, "states": {**canonical["states"], state.name: entry}})
-        made = replace(self, states=(*self.states, state), _config=config, _added=(*self._added, state))
+            design = load_config({**canonical, "states": {**canonical["states"], state.name: entry}})
+        made = replace(self, states=(*self.states, state), _design=design, _added=(*self._added, state))
         for section in made._shapes(state):
             for problem in section.place_problems(self._seat(section.damage).pair):
                 raise UsageError(f"{type(section.damage).__name__}.{problem}")
@@ -243,7 +240,7 @@ class Gearbox:
 
     def _directions(self, word: str, what: str, order: int) -> tuple[str, ...]:
         """Return the directions in which a place moves, or a bearing presses."""
-        places = self._config.places
+        places = self._design.places
         if order not in ((0, 2) if what == "bearing" else (2,)):
             raise refused("Reading.order", repr(order), "0 for the force in a bearing, 2 for an acceleration")
         along = word in (places.pressed_along if order == 0 else places.moved_along)
@@ -252,7 +249,7 @@ class Gearbox:
     @cached_property
     def _words(self) -> dict[str, tuple[str, str]]:
         """What can be read -> its kind, and its word in the short form of files."""
-        places = self._config.places
+        places = self._design.places
         bearings = {f"{called}.bearing": shaft.bearing for called, shaft in self._shafts.items()}
         return {
             **{one: ("place", one) for one in places.motions if one not in (*places.bearings, "casing")},
@@ -264,18 +261,11 @@ class Gearbox:
             **{one: ("gear", one) for one in places.gears if places.shafts},
         }
 
-    def _with_passed(self, config: Config) -> Config:
-        """Return a configuration of this gearbox with what the user passed in: kinds of damage and sensors."""
-        config = config.model_copy(update={"sensors": (*config.sensors, *self._passed)})
-        states = list(config.states)
-        for state in self._added:
-            if shapes := self._shapes(state):
-                place = [one.name for one in states].index(state.name)
-                states[place] = states[place].model_copy(update={
-                    "damage": (*states[place].damages, *shapes), "acts": not state.sham,
-                    **({} if state.sham else {"fault": shapes[0].word, "severity": state.name}),
-                })  # fmt: skip
-        return config.model_copy(update={"states": tuple(states)})
+    def _with_passed(self, design: SetDesign) -> SetDesign:
+        """Return a design of this gearbox with what the user passed in: kinds of damage and sensors."""
+        return design.with_passed(
+            self._passed, {state.name: (self._shapes(state), state.sham) for state in self._added}
+        )
 
     def _seat(self, damage: Damage) -> DamagedPlace:
         if isinstance(damage, Wear):
@@ -288,10 +278,10 @@ class Gearbox:
     @cached_property
     def _seats(self) -> dict[str, DamagedPlace]:
         """Name of every gear -> where it is."""
-        specimen, meshes = self._specimen, self._config.names.meshes
+        specimen, meshes = self._specimen, self._design.names.meshes
         if specimen.planets is not None:
             outer, inner = specimen.planets.pair, specimen.planets.ring
-            seats = (("sun", outer, Side.DRIVER), ("planet", outer, Side.DRIVEN), (RING, inner, Side.DRIVEN))
+            seats = (("sun", outer, Side.DRIVER), ("planet", outer, Side.DRIVEN), ("ring", inner, Side.DRIVEN))
             return {name: DamagedPlace(one, side, name) for name, one, side in seats}
         return {
             gear.word: DamagedPlace(one.pair, side, gear.word)
@@ -309,8 +299,8 @@ class Gearbox:
     @property
     def _shafts(self) -> dict[str, ShaftName]:
         """What the library calls shafts: those of a pair input and output."""
-        names = self._config.names
-        if self._config.planetary is not None:
+        names = self._design.names
+        if self._specimen.planets is not None:
             return {}
         words = [shaft.word for shaft in names.shafts]
         called = words if names.given else ["input", "output", *words[2:]]
@@ -318,15 +308,15 @@ class Gearbox:
 
     @cached_property
     def _specimen(self) -> Specimen:
-        return draw_specimen(self._config, self.number)
+        return self._design.gearbox(self.number)
 
 
-def draw(config: Config, number: int = 0) -> Gearbox:
+def draw(design: SetDesign, number: int = 0) -> Gearbox:
     """Return a gearbox of a set: the same that `generate` measures.
 
     Parameters
     ----------
-    config : Config
+    design : SetDesign
         What `load_config` returns.
     number : int
         From 0; there is no last one.
@@ -336,10 +326,9 @@ def draw(config: Config, number: int = 0) -> Gearbox:
     UsageError
         If the number is none.
     """
-    of_kind("config", config, Config, "what load_config returns")
+    of_kind("design", design, SetDesign, "what load_config returns")
     if not isinstance(number, int) or isinstance(number, bool) or number < 0:
         raise refused("number", repr(number), "0, 1, 2 and so on")
-    states = config.state_names[: inspection_count(config, number)]
-    drawn = (draw_operating_point(config, number, i) for i in range(len(config.operating_points)))
-    points = tuple(Point(one.speed_hz, one.torque_nm) for one in drawn)
-    return Gearbox(number, tuple(map(State, states)), points, config)
+    states = design.state_names[: design.inspections(number)]
+    points = tuple(Point(one.speed_hz, one.torque_nm) for one in design.drawn_points(number))
+    return Gearbox(number, tuple(map(State, states)), points, design)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from siggen.checks.face_accuracy import covering_classes
-from siggen.config import inherited
 from siggen.errors import UsageError
+from siggen.gearbox.source import preset
 from siggen.library.arguments import finite, refused, saying
 from siggen.library.gearbox import Gearbox
 from siggen.library.makers import counts, made
@@ -102,7 +102,7 @@ def machine(
         "operating_points": [{"speed_hz": speed, "torque_nm": torque}], "mesh_harmonics": 1, "fs_hz": FS_HZ, **rest,
     }  # fmt: skip
     with saying({**keys, "machine.": "", "operating_points.0.torque_nm": "rated_nm", "fs_hz": "rated_hz"}):
-        return made(inherited(raw), number)
+        return made(raw, number)
 
 
 @dataclass(frozen=True)
@@ -261,13 +261,13 @@ def planetary(
     torque = finite("rated_nm", torque, f"above 0 up to {most:.4g} N m, which the teeth bear", 1e-9, most)
     speed = finite("rated_hz", rated_hz, "0.05 to 500 Hz", 0.05, 500.0)
     size, load = module * ring / SET_SIZE_MM, torque / SET_TORQUE_NM
-    preset = inherited({"extends": "planetary"})
-    supports = {key: _times(preset["planetary"][key], size) for key in preset["planetary"] if "stiffness" in key}
+    base = preset("planetary")
+    supports = {key: _times(base["planetary"][key], size) for key in base["planetary"] if "stiffness" in key}
     couplings = {
-        f"{end}_coupling": {key: _times(value, load) for key, value in preset["dynamics"][f"{end}_coupling"].items()}
+        f"{end}_coupling": {key: _times(value, load) for key, value in base["dynamics"][f"{end}_coupling"].items()}
         for end in ("input", "output")
     }
-    raw = inherited({
+    raw = {
         "extends": "planetary", "states": {"others": None, "healthy": {}}, "mesh_harmonics": 1, "fs_hz": FS_HZ,
         "gears": {
             "module_mm": module, "face_width_mm": width,
@@ -276,14 +276,14 @@ def planetary(
         },
         "planetary": {
             "ring_teeth": ring, "positions_deg": [round(360.0 * i / planets, 6) for i in range(planets)],
-            "ring_mass_kg": _times(preset["planetary"]["ring_mass_kg"], size**3), **supports,
+            "ring_mass_kg": _times(base["planetary"]["ring_mass_kg"], size**3), **supports,
         },
         "dynamics": {
-            **{key: _times(preset["dynamics"][key], load) for key in ("motor_inertia_kg_m2", "load_inertia_kg_m2")},
+            **{key: _times(base["dynamics"][key], load) for key in ("motor_inertia_kg_m2", "load_inertia_kg_m2")},
             "backlash_um": [30 * module, 60 * module], **couplings,
         },
         "operating_points": [{"speed_hz": speed, "torque_nm": torque}],
-    })  # fmt: skip
+    }  # fmt: skip
     keys = {
         "gears.module_mm": "module_mm",
         "gears.face_width_mm": "face_width_mm",

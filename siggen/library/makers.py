@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from siggen.checks.face_accuracy import covering_classes
 from siggen.checks.loading import load_config
-from siggen.config import inherited, parse_yaml
+from siggen.keys.yaml_source import parse_yaml
 from siggen.library.arguments import finite, refused, saying
 from siggen.library.gearbox import Gearbox, draw
 from siggen.rig.rating import bearable_torque_nm, proposed_face_width_mm, rated_torque_nm
@@ -83,8 +83,8 @@ def single_stage(
         torque = finite("rated_nm", torque, f"above 0 up to {most:.4g} N m, which the teeth bear", 1e-9, most)
         rig = Rig(pair, module, width, (speed, speed), (torque, torque), pressure_angle_deg=angle)
         rig = replace(rig, accuracy_classes=covering_classes(checked_rig(rig)))
-        raw = inherited(parse_yaml(rig_text(rig, "single_stage", "bench"), "single_stage"))
-        return made({**raw, "states": {"healthy": {}}}, number)
+        raw = parse_yaml(rig_text(rig, "single_stage", "bench"), "single_stage")
+        return made({**raw, "states": {"others": None, "healthy": {}}}, number)
 
 
 def made(raw: Mapping[str, Any], number: int) -> Gearbox:

@@ -9,16 +9,12 @@ from math import pi
 from typing import Any
 
 import numpy as np
-from pydantic import TypeAdapter, ValidationError
 
 from siggen.arrays import FloatArray
-from siggen.config import Dynamics
-from siggen.config.states import StateSection
 from siggen.errors import ConfigError, Problem
 from siggen.faults.growth import Growth
-from siggen.faults.registry import DamageSections
-from siggen.gearbox.draw import draw_specimen
-from siggen.gearbox.tooth_law import tooth_law
+from siggen.gearbox.mesh_damage import damage_sections
+from siggen.gearbox.tooth_law import typical_tooth_law
 from siggen.gears.damage.flank_loss import with_outlines
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.lost_shape import POINTS, LostShape
@@ -28,8 +24,6 @@ from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness as by_potential_energy
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.gears.stiffness.stiffness_options import TOOTH_MODELS, StiffnessOptions
-from siggen.keys.drawing import draw
-from siggen.keys.problems import section_problems
 from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.axes import drawing, legend_above, new_axes
 from siggen.library.damage import Damage, DamagedPlace, all_damages, entries
@@ -150,9 +144,9 @@ def _of_gearbox(
     gearbox: Gearbox, state: object, torque_nm: float | None, mesh: str | None, points_per_pitch: int
 ) -> Curve:
     name = one_of("damages", state, [one.name for one in gearbox.states])
-    config = gearbox._with_passed(gearbox._config)
+    design = gearbox._with_passed(gearbox._design)
     with saying({"torque": "torque_nm"}):
-        specimen = draw_specimen(config, gearbox.number)
+        specimen = design.gearbox(gearbox.number)
         number = chosen_mesh(specimen, mesh, "mesh")
         torque = static_torque_nm(specimen, number)
         torque = torque if torque_nm is None else finite("torque_nm", torque_nm, "a number above 0", 1e-9)
@@ -169,7 +163,7 @@ def _of_pair(
 ) -> Curve:
     one_of("law", law, LAWS)
     options = StiffnessOptions(one_of("tooth", tooth, TOOTH_MODELS), coupling="body" if law == "pairs" else "none")
-    teeth = tooth_law(draw(Dynamics(), lambda _: 0.5, "dynamics"))
+    teeth = typical_tooth_law()
     parts = _parts(pair, damages, law, partial(load_at_rest, teeth, pair, options))
     on_tooth = on_teeth(parts)
     shown = damaged_engagements(pair, tuple(with_outlines(parts, pair)) or on_tooth)
@@ -252,7 +246,7 @@ def _parts(pair: GearPair, damages: Iterable[Damage] | str, law: str, loads: Any
     for one in damages:
         one_of("on", one.on, SECTIONS)
     with saying({"damage.": "damages."}):
-        sections = _sections(entries(damages, lambda one: DamagedPlace(pair, Side(one.on), one.on)))
+        sections = damage_sections(entries(damages, lambda one: DamagedPlace(pair, Side(one.on), one.on)))
         shapes = [one for one in damages if one.is_shape]
         sections += tuple(ShapeFault(gear=one.on, number=i, damage=one) for i, one in enumerate(shapes))
         problems = [
@@ -267,15 +261,3 @@ def _parts(pair: GearPair, damages: Iterable[Damage] | str, law: str, loads: Any
     growth = Growth(0, 0, 0, pair) if loads is None else Growth(0, 0, 0, pair, load_at_rest=loads)
     found = [part for section in sections for part in section.drawn(growth)]
     return tuple(found)
-
-
-def _sections(listed: list[dict[str, Any]]) -> tuple[Any, ...]:
-    if not listed:
-        return ()
-    try:
-        return tuple(TypeAdapter(DamageSections).validate_python(listed))
-    except ValidationError as error:
-        problems = section_problems(StateSection, error.errors(include_url=False), ("damage",))
-        raise ConfigError(
-            [Problem(f"damages{one.path.removeprefix('damage')}", one.received, one.allowed) for one in problems]
-        ) from None

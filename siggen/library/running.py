@@ -11,13 +11,9 @@ import numpy as np
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import RecordFailure, SimulatedRecord
-from siggen.config import Config
-from siggen.config.config import rated_nm
-from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS, carried_mesh_harmonics
-from siggen.config.stage_problems import most_teeth_per_turn
 from siggen.errors import SolverFailure
-from siggen.gearbox.draw import draw_specimen
-from siggen.keys.number import bounds
+from siggen.gearbox.design import SetDesign
+from siggen.gearbox.specimen import Specimen
 from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.gearbox import Case, Gearbox, Point
 from siggen.library.record import LineOrders, Record
@@ -29,7 +25,7 @@ __all__ = ["run", "runs"]
 
 MESH_HARMONICS = 10
 """That a record carries where no sampling rate is given."""
-FASTEST_HZ, LONGEST_S = 1000.0, 86_400.0
+FASTEST_HZ, LONGEST_S, HALF = 1000.0, 86_400.0, 0.5
 KEYS = {
     "operating_points.0.speed_hz": "speed_hz", "operating_points.0.torque_nm": "torque_nm", "fs_hz": "fs_hz",
     "duration_s": "duration_s", "internals.quantities": "truth",
@@ -86,7 +82,7 @@ def run(
     given = speed_hz is not None or torque_nm is not None
     at = Point(speed_hz, torque_nm) if given or not gearbox.points else point  # type: ignore[arg-type]
     at = _point(gearbox, at)
-    return next(_records(gearbox, _config_of(gearbox, at, duration_s, fs_hz, truth), [Case(state, at, repeat)]))
+    return next(_records(gearbox, _design_of(gearbox, at, duration_s, fs_hz, truth), [Case(state, at, repeat)]))
 
 
 def runs(
@@ -107,7 +103,7 @@ def runs(
         of_kind("cases", case, Case, "objects of Case")
     placed = [replace(case, point=_point(gearbox, case.point)) for case in cases]
     for point, group in groupby(placed, key=lambda case: case.point if isinstance(case.point, Point) else 0):
-        yield from _records(gearbox, _config_of(gearbox, point, duration_s, fs_hz, ()), list(group))
+        yield from _records(gearbox, _design_of(gearbox, point, duration_s, fs_hz, ()), list(group))
 
 
 def _point(gearbox: Gearbox, point: Point | int) -> Point | int:
@@ -141,31 +137,25 @@ def _bearable_nm(gearbox: Gearbox) -> float:
     return min(found)
 
 
-def _config_of(
+def _design_of(
     gearbox: Gearbox, point: Point | int, duration_s: float | None, fs_hz: float | None, truth: Sequence[str]
-) -> Config:
-    """Return the configuration of a run, checked as every file is."""
-    base = gearbox._config
+) -> SetDesign:
+    """Return the design of a run, checked as every file is."""
+    base = gearbox._design
     if isinstance(point, int) and duration_s is None and fs_hz is None and not truth:
         return gearbox._with_passed(base)
     speed_hz = (point if isinstance(point, Point) else max(gearbox.points, key=lambda one: one.speed_hz)).speed_hz
-    teeth = most_teeth_per_turn({name: getattr(base, name) for name in type(base).model_fields})
-    highest_hz = speed_hz * base.variation.speed_ratios[1]
-    rate = _rate_hz(gearbox, fs_hz, teeth, highest_hz)
+    rate = _rate_hz(gearbox, fs_hz, speed_hz)
     seconds = duration_s if duration_s is not None else base.duration_s if gearbox.points else 1.0
     finite("duration_s", seconds, f"above 0 up to {LONGEST_S:g} s", 1e-9, LONGEST_S)
     samples = floor(seconds * rate + 0.5)
     if samples < rate / speed_hz:
         raise refused("duration_s", f"{seconds:g} ({samples} samples at {rate:g} Hz)",
                       f"at least {1.0 / speed_hz:.4g} s, one turn of the first shaft")  # fmt: skip
-    harmonics = min(carried_mesh_harmonics(rate, teeth, highest_hz), base.mesh_harmonics)
+    harmonics = base.carried_harmonics(rate, speed_hz)
     changes: dict[str, object] = {"fs_hz": rate, "duration_s": samples / rate, "mesh_harmonics": harmonics}
     if isinstance(point, Point):
-        points = [point]
-        if bounds(base.variation.speed.slip)[1] > 0.0 and base.dynamics.rated_torque_nm is None:
-            # never simulated: a motor slips by the rated torque, which is the largest of the file
-            points.append(Point(point.speed_hz, rated_nm(base.dynamics, base.operating_points)))
-        changes["operating_points"] = [{"speed_hz": one.speed_hz, "torque_nm": one.torque_nm} for one in points]
+        changes["operating_points"] = [{"speed_hz": point.speed_hz, "torque_nm": point.torque_nm}]
     if truth:
         if not isinstance(truth, Sequence):
             raise refused("truth", repr(truth), "names such as mesh_force_n, or all")
@@ -174,45 +164,57 @@ def _config_of(
         return gearbox._with_passed(load_config({**base.canonical(), **changes}))
 
 
-def _rate_hz(gearbox: Gearbox, fs_hz: float | None, teeth: float, highest_hz: float) -> float:
-    needed, most = (SAMPLES_PER_PERIOD * (n * teeth + SIDEBANDS) * highest_hz for n in (1, MESH_HARMONICS))
+def _rate_hz(gearbox: Gearbox, fs_hz: float | None, speed_hz: float) -> float:
+    needed, most = (gearbox._design.least_rate_hz(n, speed_hz) for n in (1, MESH_HARMONICS))
     if fs_hz is not None:
         return finite(
             "fs_hz", fs_hz, f"{needed:.0f} to 1e7 Hz, for the first mesh line with its sidebands", needed, 1e7
         )
     rate = 25_600.0
     if gearbox.points:
-        rate, most = gearbox._config.fs_hz, needed
+        rate, most = gearbox._design.fs_hz, needed
     while rate < most:
         rate *= 2.0
     return rate
 
 
-def _records(gearbox: Gearbox, config: Config, cases: Sequence[Case]) -> Iterator[Record]:
-    """Yield the records of cases, all at points of a configuration."""
+def _records(gearbox: Gearbox, design: SetDesign, cases: Sequence[Case]) -> Iterator[Record]:
+    """Yield the records of cases, all at points of a design."""
     names, allowed, planned = [one.name for one in gearbox.states], "0, 1, 2 and so on", []
     for case in cases:
         repeat = int(finite("repeat", of_kind("repeat", case.repeat, int, allowed), allowed, 0))
         state, place = one_of("state", case.state, names), case.point if isinstance(case.point, int) else 0
         planned.append(PlannedRecord(0, gearbox.number, names.index(state), place, repeat, ""))
     with saying(KEYS):
-        for found in simulate_specimen(draw_specimen(config, gearbox.number), planned):
+        drawn = replace(design.gearbox(gearbox.number), rated_nm=gearbox._specimen.rated_nm)
+        _refuse_stalling(drawn)
+        for found in simulate_specimen(drawn, planned):
             if isinstance(found, RecordFailure):
                 raise SolverFailure(found.status, found.reason)
-            yield _record(gearbox, config, found)
+            yield _record(gearbox, design, found)
 
 
-def _record(gearbox: Gearbox, config: Config, found: SimulatedRecord) -> Record:
-    units = {name: sensor.quantity.shown_unit for sensor in config.sensors for name, _ in sensor.channels}
+def _refuse_stalling(gearbox: Specimen) -> None:
+    """Refuse torques at which a motor turns at less than half its speed."""
+    for point in gearbox.points:
+        slip = 0.0 if point.variation is None else point.variation.speed.slip * point.torque_nm / gearbox.rated_nm
+        if slip >= HALF:
+            received = f"{point.torque_nm:g}, a slip of {slip:.0%}"
+            most = HALF / slip * point.torque_nm
+            raise refused("torque_nm", received, f"below {most:.4g}, at which the motor slips by half its speed")
+
+
+def _record(gearbox: Gearbox, design: SetDesign, found: SimulatedRecord) -> Record:
+    units = {name: sensor.quantity.shown_unit for sensor in design.sensors for name, _ in sensor.channels}
     channels = {name: np.asarray(values, dtype=np.float64) for name, values in found.channels.items()}
     truth = {name: np.asarray(values, dtype=np.float64) for name, values in (found.internals or {}).items()}
     speed_hz, torque_nm = (float(str(found.labels[name])) for name in ("speed_hz", "torque_nm"))
-    return Record(str(found.labels["state"]), speed_hz, torque_nm, config.fs_hz, channels, units, dict(found.labels),
+    return Record(str(found.labels["state"]), speed_hz, torque_nm, design.fs_hz, channels, units, dict(found.labels),
                   np.asarray(found.tacho_s, dtype=np.float64), truth, _lines(gearbox))  # fmt: skip
 
 
 def _lines(gearbox: Gearbox) -> tuple[LineOrders, ...]:
-    specimen, names = gearbox._specimen, gearbox._config.names
+    specimen, names = gearbox._specimen, gearbox._design.names
     if specimen.planets is not None:
         teeth, carrier = specimen.planets.teeth, float(specimen.planets.teeth.carrier_turns)
         shafts = {"carrier": carrier, "planet": carrier * teeth.ring / teeth.planet}

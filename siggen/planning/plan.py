@@ -7,19 +7,21 @@ from __future__ import annotations
 
 from array import array
 from bisect import bisect_left
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import lru_cache
 from itertools import chain, pairwise
 from typing import overload
 
-from siggen.config import BLOCK, Config, Splits
-from siggen.gearbox.configured import inspection_count, pair_of
+from siggen.gearbox.design import SetDesign
 from siggen.seeding import Stream, generator
 from siggen.sensors.converter import FROM_NOISE
 from siggen.sensors.sensor import SensorBase
 
 SPLITS = ("train", "validation", "test")
+
+BLOCK = 20
+"""Gearboxes, or pairs, in which the shares of the splits are met exactly."""
 
 SUB_BLOCK = 5
 """Specimens among which splits are shuffled; small, so that a set cut off anywhere is still nearly balanced."""
@@ -103,18 +105,18 @@ class ShardPlan:
 class Records(Sequence[PlannedRecord]):
     """All planned records in ascending order, each worked out when it is asked for."""
 
-    def __init__(self, config: Config) -> None:
-        self._config = config
-        self._ids: Sequence[int] = range(config.specimens * config.records_per_specimen)
-        if config.life is not None:
-            of_each = (record_ids_of(config, one) for one in range(config.specimens))
+    def __init__(self, design: SetDesign) -> None:
+        self._design = design
+        self._ids: Sequence[int] = range(design.specimens * design.records_per_specimen)
+        if design.lives:
+            of_each = (record_ids_of(design, one) for one in range(design.specimens))
             self._ids = tuple(chain.from_iterable(of_each))
 
     def __len__(self) -> int:
         return len(self._ids)
 
     def __iter__(self) -> Iterator[PlannedRecord]:
-        return (planned_record(self._config, i) for i in self._ids)
+        return (planned_record(self._design, i) for i in self._ids)
 
     @overload
     def __getitem__(self, index: int) -> PlannedRecord: ...
@@ -122,34 +124,17 @@ class Records(Sequence[PlannedRecord]):
     def __getitem__(self, index: slice) -> tuple[PlannedRecord, ...]: ...
     def __getitem__(self, index: int | slice) -> PlannedRecord | tuple[PlannedRecord, ...]:
         if isinstance(index, slice):
-            return tuple(planned_record(self._config, i) for i in self._ids[index])
-        return planned_record(self._config, self._ids[index])
+            return tuple(planned_record(self._design, i) for i in self._ids[index])
+        return planned_record(self._design, self._ids[index])
 
 
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """The set that a configuration describes."""
-
-    config: Config
-
-    @property
-    def records(self) -> Records:
-        """All records in ascending order, worked out one by one."""
-        return Records(self.config)
-
-    @property
-    def count(self) -> int:
-        """Number of records."""
-        return len(self.records)
+def plan(design: SetDesign) -> Records:
+    """Return all records of a set in ascending order, worked out one by one."""
+    return Records(design)
 
 
-def plan(config: Config) -> Plan:
-    """Return the plan of a configuration."""
-    return Plan(config)
-
-
-def planned_record(config: Config, record_id: int) -> PlannedRecord:
-    """Return where a record stands; depends on the configuration (without `specimens`) and the index alone.
+def planned_record(design: SetDesign, record_id: int) -> PlannedRecord:
+    """Return where a record stands; depends on the design (without `specimens`) and the index alone.
 
     Raises
     ------
@@ -158,50 +143,47 @@ def planned_record(config: Config, record_id: int) -> PlannedRecord:
     """
     if record_id < 0:
         raise IndexError(f"record {record_id}: indices begin at 0")
-    rest, repeat = divmod(record_id, config.repeats)
-    rest, operating_point_id = divmod(rest, len(config.operating_points))
-    specimen_id, state_id = divmod(rest, config.state_count)
-    split = split_of(config, specimen_id)
+    rest, repeat = divmod(record_id, design.repeats)
+    rest, operating_point_id = divmod(rest, design.points)
+    specimen_id, state_id = divmod(rest, design.state_count)
+    split = split_of(design, specimen_id)
     return PlannedRecord(record_id, specimen_id, state_id, operating_point_id, repeat, split)
 
 
-def record_ids_of(config: Config, specimen_id: int) -> range:
+def record_ids_of(design: SetDesign, specimen_id: int) -> range:
     """Return the indices of a specimen's records; with `life` the rest of its indices stays free."""
-    first = specimen_id * config.records_per_specimen
-    own = inspection_count(config, specimen_id)
-    return range(first, first + own * len(config.operating_points) * config.repeats)
+    first = specimen_id * design.records_per_specimen
+    return range(first, first + design.inspections(specimen_id) * design.points * design.repeats)
 
 
-def split_of(config: Config, specimen_id: int) -> str:
+def split_of(design: SetDesign, specimen_id: int) -> str:
     """Return the split of a specimen; depends on seed, `splits` and the specimen, or its gear pair, alone."""
-    block, place = divmod(_owner(config, specimen_id), BLOCK)
-    return _splits_of_block(config.seed, config.splits, block)[place]
+    block, place = divmod(_owner(design, specimen_id), BLOCK)
+    return _splits_of_block(design.seed, design.shares, block)[place]
 
 
-def _owner(config: Config, specimen_id: int) -> int:
+def _owner(design: SetDesign, specimen_id: int) -> int:
     """Return the index that a split belongs to: the specimen's own, or that of its gear pair."""
-    pair = pair_of(config, specimen_id) if config.splits.by == "pair" else None
+    pair = design.pair_of(specimen_id) if design.split_by_pair else None
     return specimen_id if pair is None else pair
 
 
 @lru_cache(maxsize=4096)
-def _splits_of_block(seed: int, splits: Splits, block: int) -> tuple[str, ...]:
+def _splits_of_block(seed: int, shares: tuple[tuple[str, int], ...], block: int) -> tuple[str, ...]:
     rng = generator(seed, Stream.SPLIT, block)
-    labels = _even_sequence(splits)
+    labels = _even_sequence(dict(shares))
     shuffled: list[str] = []
     for start in range(0, BLOCK, SUB_BLOCK):
         shuffled += [labels[start + i] for i in rng.permutation(SUB_BLOCK)]
     return tuple(shuffled)
 
 
-@cache
-def _even_sequence(splits: Splits) -> tuple[str, ...]:
+def _even_sequence(wanted: Mapping[str, int]) -> tuple[str, ...]:
     """Spread the labels of a block evenly: each place goes to the split that lags most behind its share (derived).
 
     The shares lag by 1 in total before each place, so the largest of three lags is at least 1/3 and no split is ever
     more than 2/3 ahead: the counts come out exactly.
     """
-    wanted = splits.model_dump()
     given = dict.fromkeys(SPLITS, 0)
     sequence = []
     for place in range(1, BLOCK + 1):
@@ -212,59 +194,59 @@ def _even_sequence(splits: Splits) -> tuple[str, ...]:
     return tuple(sequence)
 
 
-def shards(config: Config, split: str, earlier: Sequence[int] = ()) -> tuple[ShardPlan, ...]:
+def shards(design: SetDesign, split: str, earlier: Sequence[int] = ()) -> tuple[ShardPlan, ...]:
     """Return the shards of a split; all are full but the last, so a larger set has the same full shards.
 
     Parameters
     ----------
-    config : Config
+    design : SetDesign
     split : str
     earlier : sequence of int
         Numbers of specimens, ascending, that the set had before it was extended: shards never hold specimens from
         both sides of one, so that those of the smaller set stay as they are.
     """
-    members = array("q", (i for i in range(config.specimens) if split_of(config, i) == split))
-    size = specimens_per_shard(config)
+    members = array("q", (i for i in range(design.specimens) if split_of(design, i) == split))
+    size = specimens_per_shard(design)
     groups: list[Sequence[int]] = []
-    for first, end in pairwise((0, *earlier, config.specimens)):
+    for first, end in pairwise((0, *earlier, design.specimens)):
         own = members[bisect_left(members, first) : bisect_left(members, end)]
         groups += [own[start : start + size] for start in range(0, len(own), size)]
     return tuple(
-        ShardPlan(split, number, group, config.records_per_specimen, _counts(config, group))
+        ShardPlan(split, number, group, design.records_per_specimen, _counts(design, group))
         for number, group in enumerate(groups)
     )
 
 
-def _counts(config: Config, specimens: Sequence[int]) -> tuple[int, ...]:
-    return () if config.life is None else tuple(len(record_ids_of(config, one)) for one in specimens)
+def _counts(design: SetDesign, specimens: Sequence[int]) -> tuple[int, ...]:
+    return tuple(len(record_ids_of(design, one)) for one in specimens) if design.lives else ()
 
 
-def specimen_count(config: Config, split: str) -> int:
+def specimen_count(design: SetDesign, split: str) -> int:
     """Return the number of specimens of a split without listing them: all whole blocks hold as many."""
-    block = len(config.gears.pairs) if config.splits.by == "pair" else BLOCK
-    blocks, rest = divmod(config.specimens, block)
+    block = design.pairs if design.split_by_pair else BLOCK
+    blocks, rest = divmod(design.specimens, block)
     first = blocks * block
-    own = sum(split_of(config, specimen) == split for specimen in range(block)) if blocks else 0
-    tail = sum(split_of(config, specimen) == split for specimen in range(first, first + rest))
+    own = sum(split_of(design, specimen) == split for specimen in range(block)) if blocks else 0
+    tail = sum(split_of(design, specimen) == split for specimen in range(first, first + rest))
     return blocks * own + tail
 
 
-def shard_count(config: Config, split: str) -> int:
+def shard_count(design: SetDesign, split: str) -> int:
     """Return the number of shards of a split without listing them."""
-    return -(-specimen_count(config, split) // specimens_per_shard(config))
+    return -(-specimen_count(design, split) // specimens_per_shard(design))
 
 
-def specimens_per_shard(config: Config) -> int:
+def specimens_per_shard(design: SetDesign) -> int:
     """Return the number of specimens in a full shard, from the raw bytes of a specimen's signals."""
-    specimen_bytes = _row_bytes(config) * len(config.channels) * config.records_per_specimen + _internal_bytes(config)
+    specimen_bytes = _row_bytes(design) * len(design.channels) * design.records_per_specimen + _internal_bytes(design)
     return max(1, SHARD_BYTES * 100 // (specimen_bytes * DISK_SHARE_PERCENT))
 
 
-def estimated_bytes(config: Config, records: int) -> int:
+def estimated_bytes(design: SetDesign, records: int) -> int:
     """Return about how many bytes the signals of a set of so many records will take on disk."""
-    percents = [_disk_percent(sensor) for sensor in config.sensors for _ in sensor.axes]
-    internals = config.specimens * _internal_bytes(config) * UNQUANTISED_SHARE_PERCENT // 100
-    return records * _row_bytes(config) * sum(percents) // 100 + internals
+    percents = [_disk_percent(sensor) for sensor in design.sensors for _ in sensor.axes]
+    internals = design.specimens * _internal_bytes(design) * UNQUANTISED_SHARE_PERCENT // 100
+    return records * _row_bytes(design) * sum(percents) // 100 + internals
 
 
 def _disk_percent(sensor: SensorBase) -> int:
@@ -273,24 +255,23 @@ def _disk_percent(sensor: SensorBase) -> int:
     return UNQUANTISED_SHARE_PERCENT if sensor.bits is None or sensor.bits > 16 else DISK_SHARE_PERCENT
 
 
-def rows_per_group(config: Config) -> int:
+def rows_per_group(design: SetDesign) -> int:
     """Return the number of records in a row group: a power of two that fills 4 to 8 MB per channel.
 
     Fewer where all channels together would pass 64 MB, and never less than one.
     """
-    row_bytes = _row_bytes(config)
-    rows = min(GROUP_CHANNEL_BYTES // row_bytes, GROUP_BYTES // (row_bytes * len(config.channels)))
+    row_bytes = _row_bytes(design)
+    rows = min(GROUP_CHANNEL_BYTES // row_bytes, GROUP_BYTES // (row_bytes * len(design.channels)))
     return 1 << (max(1, rows).bit_length() - 1)
 
 
-def _internal_bytes(config: Config) -> int:
+def _internal_bytes(design: SetDesign) -> int:
     """Return about how many raw bytes of internal quantities a specimen with some has."""
-    chosen = config.internals
-    if chosen is None:
+    if design.stored is None:
         return 0
-    series = MANY_QUANTITIES if chosen.stores_all else len(chosen.quantities)
-    return config.records_per_specimen * series * _row_bytes(config)
+    series = MANY_QUANTITIES if design.stores_all else len(design.stored)
+    return design.records_per_specimen * series * _row_bytes(design)
 
 
-def _row_bytes(config: Config) -> int:
-    return config.samples * 4
+def _row_bytes(design: SetDesign) -> int:
+    return design.samples * 4

@@ -6,17 +6,12 @@ Source: the header that the library `datasets` writes for the same features (com
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pyarrow as pa
 
-from siggen.dataset.card import faults
-from siggen.faults.registry import HEALTHY
-from siggen.gearbox.lived import SEVERITIES
-from siggen.names import SEVERAL
-
-if TYPE_CHECKING:
-    from siggen.config import Config
+from siggen.gearbox.description import class_words
+from siggen.gearbox.design import SetDesign
 
 DTYPES = {pa.float64(): "float64", pa.float32(): "float32", pa.string(): "string", pa.bool_(): "bool"}
 
@@ -26,36 +21,14 @@ Counts = Mapping[str, tuple[int, int]]
 
 
 def dataset_info(
-    config: Config, schemas: Mapping[str, pa.Schema], counts: Mapping[str, Counts]
+    design: SetDesign, schemas: Mapping[str, pa.Schema], counts: Mapping[str, Counts]
 ) -> list[dict[str, Any]]:
     """Return one entry per view of the set (signals, labels, damage, internals), given schemas and counts by view."""
-    names = class_names(config)
+    names = class_words(design)
     return [
         _entry(view, schema, counts[view], names if view in ("signals", "labels") else {})
         for view, schema in schemas.items()
     ]
-
-
-def class_names(config: Config) -> dict[str, tuple[str, ...]]:
-    """Return the values of the columns of texts that are classes, in the order of their numbers."""
-    if config.life is not None:
-        return {
-            "state": config.state_names,
-            "fault": (HEALTHY, *faults(config)),
-            "severity": SEVERITIES,
-            "faulty_gear": _faulty_gears(config),
-        }
-    return {
-        "state": tuple(state.name for state in config.states),
-        "fault": tuple(dict.fromkeys(state.fault for state in config.states)),
-        "severity": tuple(dict.fromkeys(state.severity for state in config.states)),
-        "faulty_gear": _faulty_gears(config),
-    }
-
-
-def _faulty_gears(config: Config) -> tuple[str, ...]:
-    """Return what `faulty_gear` may say of the gearboxes of a set."""
-    return ("none", *(gear.word for gear in config.names.gears), SEVERAL)
 
 
 def _entry(view: str, schema: pa.Schema, counts: Counts, names: Mapping[str, Sequence[str]]) -> dict[str, Any]:

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from siggen.config import read_yaml
 from siggen.errors import ConfigError, Problem
+from siggen.keys.yaml_source import read_yaml
 from siggen.publication.spdx_licence import is_spdx_licence, nearest_spdx_licence
 
 UNSET = "unset"

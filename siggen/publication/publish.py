@@ -8,12 +8,11 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pyarrow as pa
 
-from siggen.dataset.card import faults_text, tags
-from siggen.dataset.card_making import quantities_text
+from siggen.dataset.card import quantities_text, tags
 from siggen.dataset.manifest import BLIND, CARD, INJECTED, MANIFEST
 from siggen.dataset.new_folder import new_folder
 from siggen.dataset.reading import Dataset
@@ -21,15 +20,14 @@ from siggen.dataset.reading import open as open_set
 from siggen.dataset.seal import sealed
 from siggen.dataset.storage import LocalFolder, Storage, copy_object
 from siggen.dataset.storage_at import storage_at
-from siggen.errors import ConfigError, DatasetError, UsageError, counted
+from siggen.errors import DatasetError, UsageError, counted
+from siggen.gearbox.description import faults_text, machine_word
+from siggen.gearbox.design import SetDesign, design_of
 from siggen.publication.audit_section import AUDIT, audit_section
 from siggen.publication.croissant import FOLDERS, croissant
 from siggen.publication.dataset_info import dataset_info
 from siggen.publication.publication_facts import TEMPLATE, PublicationFacts, read_publication_facts
 from siggen.publication.published_card import published_card
-
-if TYPE_CHECKING:
-    from siggen.config import Config
 
 CROISSANT, PREVIEWS = "croissant.json", "previews"
 
@@ -86,17 +84,17 @@ def publication(
         raise UsageError(f"{path}: is a test part of a benchmark, ready as it is; publish the part to learn from")
     facts = _facts(Path(path), facts_file)
     found = _audit_file(Path(path), audit)
-    config = _config(dataset)
-    _check_recordings(path, config, with_recordings=with_recordings)
+    design = _design(dataset)
+    _check_recordings(path, design, with_recordings=with_recordings)
     files = dataset.files
     copied = tuple(name for name in files if name not in (CARD, CROISSANT) and not name.startswith(PREVIEWS))
     size = sum(files[name].bytes for name in copied)
-    return Publication(_texts(dataset, config, facts, found), copied, size, found)
+    return Publication(_texts(dataset, design, facts, found), copied, size, found)
 
 
-def _check_recordings(path: Path | str, config: Config, *, with_recordings: bool) -> None:
+def _check_recordings(path: Path | str, design: SetDesign, *, with_recordings: bool) -> None:
     """Refuse a set whose configuration holds what was fitted to recordings, unless its owner says so."""
-    fitted = [s.name for s in config.sensors if s.fitted]
+    fitted = [s.name for s in design.sensors if s.fitted]
     if fitted and not with_recordings:
         raise UsageError(
             f"{path}: paths and lines of {', '.join(fitted)} are fitted to recordings; "
@@ -175,32 +173,28 @@ def _audit_file(path: Path, given: Path | None) -> Path | None:
     return beside if beside.is_file() else None
 
 
-def _config(dataset: Dataset) -> Config:
-    from siggen.config import parse
-
-    parsed = parse(dataset.config)
-    if parsed.config is None:
-        raise ConfigError(parsed.problems, f"{dataset.path}/config.yaml")
-    if parsed.config.identity != dataset.inventory.identity:
+def _design(dataset: Dataset) -> SetDesign:
+    design = design_of(dataset.config, f"{dataset.path}/config.yaml")
+    if design.identity != dataset.inventory.identity:
         raise DatasetError(
             f"{dataset.path}: this version of siggen reads its configuration otherwise; publish with its own"
         )
-    return parsed.config
+    return design
 
 
-def _texts(dataset: Dataset, config: Config, facts: PublicationFacts, audit: Path | None) -> dict[str, bytes]:
+def _texts(dataset: Dataset, design: SetDesign, facts: PublicationFacts, audit: Path | None) -> dict[str, bytes]:
     rows = dataset.inventory.rows
     records = counted(rows, f"labelled {quantities_text(dataset.channels)} record")
     description = (
-        f"{records} of a simulated spur gear pair, {faults_text(config)}, "
-        f"{config.duration_s:g} s each at {config.fs_hz:g} Hz, of {counted(config.specimens, 'gearbox', 'gearboxes')}. "
+        f"{records} of a simulated {machine_word(design)}, {faults_text(design)}, "
+        f"{design.duration_s:g} s each at {design.fs_hz:g} Hz, of {counted(design.specimens, 'gearbox', 'gearboxes')}. "
         "Computed by siggen, not measured."
     )
     limits = "Simulated: a model trained on it has to be tested on measurements before it is trusted on them."
     schemas = _schemas(dataset)
-    info = dataset_info(config, schemas, _counts(dataset, tuple(schemas)))
-    card = published_card(dataset.card(), config, facts, info, audit_section(config.identity, audit))
-    return {CARD: card.encode(), CROISSANT: _json(croissant(facts, description, tags(config), schemas, limits))}
+    info = dataset_info(design, schemas, _counts(dataset, tuple(schemas)))
+    card = published_card(dataset.card(), design, facts, info, audit_section(design.identity, audit))
+    return {CARD: card.encode(), CROISSANT: _json(croissant(facts, description, tags(design), schemas, limits))}
 
 
 def _schemas(dataset: Dataset) -> dict[str, pa.Schema]:

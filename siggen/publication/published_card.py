@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import yaml
 
 from siggen.errors import DatasetError
-from siggen.publication.physics_sections import assumed_numbers_section, physics_section
+from siggen.gearbox.design import SetDesign
+from siggen.gearbox.physics_sections import assumed_numbers_section, physics_section
 from siggen.publication.publication_facts import PublicationFacts
-
-if TYPE_CHECKING:
-    from siggen.config import Config
 
 BEFORE = "\n## Columns of `data/`"
 FENCE = "---\n"
 
 
 def published_card(
-    card: str, config: Config, facts: PublicationFacts, info: Sequence[Mapping[str, Any]], audit: str
+    card: str, design: SetDesign, facts: PublicationFacts, info: Sequence[Mapping[str, Any]], audit: str
 ) -> str:
     """Return the card; `card` is the set's own, whose measured section it keeps.
 
@@ -35,7 +33,7 @@ def published_card(
         raise DatasetError(
             "README.md of the set is not a card of siggen; `siggen generate` makes it again once deleted"
         )
-    own = "\n".join([physics_section(config), audit, assumed_numbers_section(config)])
+    own = "\n".join([physics_section(design), audit, assumed_numbers_section(design)])
     body = f"{body[: place + 1]}{own}\n{body[place + 1 :]}"
     return f"{FENCE}{_header(yaml.safe_load(header), facts, info)}{FENCE}{body.rstrip()}\n\n{_closing(facts)}"
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from siggen.dataset.environment import version_text
 from siggen.dataset.extensions import put_extensions, read_extensions
@@ -12,14 +11,12 @@ from siggen.dataset.storage import Storage
 from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
-from siggen.errors import ConfigError, DatasetError, UsageError
+from siggen.errors import DatasetError, UsageError
+from siggen.gearbox.design import stored_design
 from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import ALLOWED_LOSS, LossLimit
 from siggen.sets.run_journal import Events
 from siggen.sets.set_run import Generation, Progress, SetRun, set_run
-
-if TYPE_CHECKING:
-    from siggen.config import Config
 
 
 def extend(
@@ -67,14 +64,14 @@ def extend(
         there = manifest.specimens
         wanted = _wanted(specimens, there)
         _check_begun(storage, there, wanted)
-        config = _config(storage, wanted)
-        if config.identity != manifest.identity:
+        design = stored_design(storage.get(CONFIG), f"{storage.location}/{CONFIG}", {"specimens": wanted})
+        if design.identity != manifest.identity:
             raise DatasetError(f"{storage.location}/{CONFIG} is not the configuration of this set; nothing was changed")
         storage.delete_leftovers()
         earlier = [*(count for count in read_extensions(storage) if count < there), there]
         with Interruption() as interruption:
-            chosen, limit = engine_of(engine, workers), LossLimit(config, allowed_loss)
-            run = set_run(config, storage, chosen, progress, interruption, earlier, events, limit)
+            chosen, limit = engine_of(engine, workers), LossLimit(design, allowed_loss)
+            run = set_run(design, storage, chosen, progress, interruption, earlier, events, limit)
             _check_shards(run, there)
             put_extensions(storage, [*earlier, wanted])
             return run.finish()
@@ -100,16 +97,6 @@ def _check_begun(storage: Storage, there: int, wanted: int) -> None:
         )
 
 
-def _config(storage: Storage, specimens: int) -> Config:
-    from siggen.config import STORED_NUMBERS, parse, parse_yaml
-
-    source = f"{storage.location}/{CONFIG}"
-    parsed = parse({**parse_yaml(storage.get(CONFIG).decode(), source, STORED_NUMBERS), "specimens": specimens})
-    if parsed.config is None:
-        raise ConfigError(parsed.problems, source)
-    return parsed.config
-
-
 def _check_shards(run: SetRun, there: int) -> None:
     """Find the shards of the set as it is, each of which has to be whole."""
     old = [shard for shard in run.planned if shard.specimens[-1] < there]
@@ -122,5 +109,5 @@ def _check_shards(run: SetRun, there: int) -> None:
             f"({', '.join(lost[:3])}{', ...' if len(lost) > 3 else ''}). {why or 'no file is there'}. This is "
             f"{version_text(run.environment)}: only whole sets of the same fingerprint are extended. `siggen verify "
             f"{where}` compares all files; extend with the version and the kind of processor that made the set, or "
-            f"generate a new one: siggen generate {where}/{CONFIG} --set specimens={run.config.specimens} --out NEW"
+            f"generate a new one: siggen generate {where}/{CONFIG} --set specimens={run.design.specimens} --out NEW"
         )

@@ -1,26 +1,23 @@
-"""From a configuration to a finished set: what a folder holds already, then a run that makes the rest."""
+"""From a design to a finished set: what a folder holds already, then a run that makes the rest."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from siggen.dataset.extensions import earlier_specimens
 from siggen.dataset.folder import is_finished
 from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
+from siggen.gearbox.design import SetDesign
 from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import ALLOWED_LOSS, LossLimit
 from siggen.sets.run_journal import Events
 from siggen.sets.set_run import Generation, Progress, set_run, unchanged
 
-if TYPE_CHECKING:
-    from siggen.config import Config
-
 
 def generate(
-    config: Config,
+    design: SetDesign,
     out: Path | str,
     workers: int | None = None,
     progress: Progress | None = None,
@@ -33,7 +30,8 @@ def generate(
 
     Parameters
     ----------
-    config : Config
+    design : SetDesign
+        What `load_config` returns.
     out : path
         A new or empty folder, or one that holds a part of this very set.
     workers : int, optional
@@ -61,13 +59,13 @@ def generate(
     EngineError
         If a simulation raised, or workers kept dying. Committed shards stay.
     """
-    limit = LossLimit(config, allowed_loss)
+    limit = LossLimit(design, allowed_loss)
     storage = storage_at(out)
     with storage.writing():
-        if is_finished(storage, config):
+        if is_finished(storage, design):
             return unchanged(storage, events)
         storage.delete_leftovers()
         chosen = engine_of(engine, workers)
         with Interruption() as interruption:
-            earlier = earlier_specimens(storage, config.specimens)
-            return set_run(config, storage, chosen, progress, interruption, earlier, events, limit).finish()
+            earlier = earlier_specimens(storage, design.specimens)
+            return set_run(design, storage, chosen, progress, interruption, earlier, events, limit).finish()

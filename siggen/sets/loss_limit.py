@@ -6,14 +6,11 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import chain
-from typing import TYPE_CHECKING
 
 from siggen.columns.record import RecordFailure
 from siggen.errors import EXIT_RECORDS_FAILED, SiggenError, UsageError, counted
+from siggen.gearbox.design import SetDesign
 from siggen.planning.plan import planned_record
-
-if TYPE_CHECKING:
-    from siggen.config import Config
 
 ALLOWED_LOSS = 0.1
 """Share of a state's records that may fail before a run stops, unless told otherwise."""
@@ -31,7 +28,7 @@ class LossLimit:
 
     Attributes
     ----------
-    config
+    design
         Whose states are counted.
     share
         Of the records of a state that may fail, from 0 to 1.
@@ -39,7 +36,7 @@ class LossLimit:
         Of the whole run, which has as many of every state.
     """
 
-    config: Config
+    design: SetDesign
     share: float = ALLOWED_LOSS
     records: int = 0
     failures: dict[str, Sequence[RecordFailure]] = field(default_factory=dict)
@@ -72,16 +69,16 @@ class LossLimit:
         LossError
         """
         self.failures[shard] = failures
-        lost = Counter(planned_record(self.config, one.record_id).state_id for one in chain(*self.failures.values()))
-        each = self.records // self.config.state_count
+        lost = Counter(planned_record(self.design, one.record_id).state_id for one in chain(*self.failures.values()))
+        each = self.records // self.design.state_count
         for state, count in sorted(lost.items()):
             if count > self.share * each:
                 raise LossError(self._message(state, count, each))
 
     def _message(self, state: int, count: int, each: int) -> str:
-        name, config = self.config.state_names[state], self.config
+        name, design = self.design.state_names[state], self.design
         of_state = (
-            one for one in chain(*self.failures.values()) if planned_record(config, one.record_id).state_id == state
+            one for one in chain(*self.failures.values()) if planned_record(design, one.record_id).state_id == state
         )
         first = min(of_state, key=lambda one: one.record_id)
         return (

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from siggen.dataset.environment import fingerprint, version_text
 from siggen.dataset.excerpt import excerpt_name
-from siggen.dataset.folder import config_bytes, is_finished
+from siggen.dataset.folder import is_finished
 from siggen.dataset.manifest import CONFIG
 from siggen.dataset.sidecar import Sidecar, ranges
 from siggen.dataset.storage import Storage, copy_object
@@ -23,16 +23,14 @@ from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
 from siggen.engines.serial import SerialEngine
-from siggen.errors import ConfigError, DatasetError, UsageError, counted
+from siggen.errors import DatasetError, UsageError, counted
+from siggen.gearbox.design import SetDesign, stored_design
 from siggen.planning.plan import ShardPlan
 from siggen.sets.committed_shards import promised
 from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import ALLOWED_LOSS, LossLimit
 from siggen.sets.run_journal import Events
 from siggen.sets.set_run import Generation, Progress, SetRun, set_run, unchanged
-
-if TYPE_CHECKING:
-    from siggen.config import Config
 
 COPIES = 8
 """Shards that `merge` copies at once: hashing lets other threads work, and disks and stores take their time."""
@@ -61,7 +59,7 @@ def part_of(text: str) -> SetPart:
 
 
 def generate_part(
-    config: Config,
+    design: SetDesign,
     out: Path | str,
     part: SetPart | tuple[int, int],
     workers: int | None = None,
@@ -77,7 +75,7 @@ def generate_part(
     ----------
     part : (int, int)
         Number of the part, from 1, and count of all parts. A part may have no shard, where there are fewer than parts.
-    config, out, workers, progress, engine, events
+    design, out, workers, progress, engine, events
         As for `generate`.
     allowed_loss
         The same, of the records of this part.
@@ -87,15 +85,15 @@ def generate_part(
     DatasetError, UsageError, InterruptionError, LossError, EngineError
         As of `generate`.
     """
-    chosen, limit = SetPart(*part), LossLimit(config, allowed_loss)
+    chosen, limit = SetPart(*part), LossLimit(design, allowed_loss)
     storage = storage_at(out)
     with storage.writing():
-        if is_finished(storage, config):
+        if is_finished(storage, design):
             return unchanged(storage, events)
         storage.delete_leftovers()
         with Interruption() as interruption:
             run = set_run(
-                config, storage, engine_of(engine, workers), progress, interruption, events=events, limit=limit
+                design, storage, engine_of(engine, workers), progress, interruption, events=events, limit=limit
             )
             return run.finish_some(run.planned[chosen.number - 1 :: chosen.of])
 
@@ -106,7 +104,7 @@ def merge(parts: Sequence[Path | str], out: Path | str, progress: Progress | Non
     Parameters
     ----------
     parts : sequence of path
-        Folders that `generate_part` wrote, all of one configuration, in any order.
+        Folders that `generate_part` wrote, all of one design, in any order.
     out : path
         A new or empty folder, or one that holds a part of this set, one of `parts` for example.
     progress : callable, optional
@@ -120,15 +118,15 @@ def merge(parts: Sequence[Path | str], out: Path | str, progress: Progress | Non
         After SIGINT or SIGTERM; the same call continues.
     """
     sources = [storage_at(part) for part in parts]
-    config = _common_config(sources)
+    design = _common_design(sources)
     target = storage_at(out)
     with target.writing():
-        if is_finished(target, config):
+        if is_finished(target, design):
             return unchanged(target)
         target.delete_leftovers()
         with Interruption() as interruption:
-            run = set_run(config, target, SerialEngine(), progress, interruption)
-            target.put(CONFIG, config_bytes(config))
+            run = set_run(design, target, SerialEngine(), progress, interruption)
+            target.put(CONFIG, design.text.encode())
             run.trusted = _one_version(run, [target, *sources])
             run.take_over(run.planned)
             _copy_missing(run, sources, target)
@@ -161,18 +159,12 @@ def _one_version(run: SetRun, storages: Sequence[Storage]) -> frozenset[str]:
     return frozenset(environments)
 
 
-def _common_config(sources: Sequence[Storage]) -> Config:
-    from siggen.config import STORED_NUMBERS, parse, parse_yaml
-
-    found: list[Config] = []
+def _common_design(sources: Sequence[Storage]) -> SetDesign:
+    found: list[SetDesign] = []
     for source in sources:
-        name = f"{source.location}/{CONFIG}"
         if not source.exists(CONFIG):
             raise DatasetError(f"{source.location}: is no part of a set (it has no {CONFIG})")
-        parsed = parse(parse_yaml(source.get(CONFIG).decode(), name, STORED_NUMBERS))
-        if parsed.config is None:
-            raise ConfigError(parsed.problems, name)
-        found.append(parsed.config)
+        found.append(stored_design(source.get(CONFIG), f"{source.location}/{CONFIG}"))
         if (found[-1].identity, found[-1].specimens) != (found[0].identity, found[0].specimens):
             raise DatasetError(f"{source.location} is a part of another set than {sources[0].location}")
     if not found:
@@ -205,7 +197,7 @@ def _copied(run: SetRun, sources: Sequence[Storage], target: Storage, shard: Sha
 
 
 def _promised(run: SetRun, storage: Storage, shard: ShardPlan) -> Sidecar | None:
-    found = promised(run.config.identity, run.config.state_names, storage, shard)
+    found = promised(run.design.identity, run.design.state_names, storage, shard)
     return None if isinstance(found, str) else found
 
 

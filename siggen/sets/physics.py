@@ -12,55 +12,55 @@ from siggen.dataset.chunk import ChunkSimulation
 from siggen.keys.column import Column
 
 if TYPE_CHECKING:
-    from siggen.config import Config
+    from siggen.gearbox.design import SetDesign
     from siggen.record.compilation import CompilationPart
 
 
-def _nothing(config: Config) -> Sequence[CompilationPart]:  # noqa: ARG001 - as every physics
+def _nothing(design: SetDesign) -> Sequence[CompilationPart]:  # noqa: ARG001 - as every physics
     return ()
 
 
-def _no_sizes(config: Config, specimen_id: int) -> Mapping[str, Mapping[str, object]]:  # noqa: ARG001
+def _no_sizes(design: SetDesign, specimen_id: int) -> Mapping[str, Mapping[str, object]]:  # noqa: ARG001
     return {}
 
 
-def _no_life(config: Config, specimen_id: int) -> Mapping[str, Sequence[Mapping[str, object]]]:  # noqa: ARG001
+def _no_life(design: SetDesign, specimen_id: int) -> Mapping[str, Sequence[Mapping[str, object]]]:  # noqa: ARG001
     return {}
 
 
 @dataclass(frozen=True, slots=True)
 class Physics:
-    """Functions of (configuration, record): pure, and importable by name, since workers receive them.
+    """Functions of (design, record): pure, and importable by name, since workers receive them.
 
     Attributes
     ----------
     simulate
-        (config, ids of one specimen's records) -> records or failures.
+        (design, ids of one specimen's records) -> records or failures.
     damage_rows
-        (config, ids of one specimen's records) -> rows of `damage/`.
+        (design, ids of one specimen's records) -> rows of `damage/`.
     life_rows
-        (config, specimen) -> rows of the tables of `life/`, by table.
+        (design, specimen) -> rows of the tables of `life/`, by table.
     quantities
-        config -> columns of `internals/`; asked only where a set stores some.
+        design -> columns of `internals/`; asked only where a set stores some.
     to_compile
-        config -> tasks that compile what its records need, side by side; none where that is compiled.
+        design -> tasks that compile what its records need, side by side; none where that is compiled.
     damage_sizes
-        (config, specimen) -> labels of the damage of every state, from its drawing alone.
+        (design, specimen) -> labels of the damage of every state, from its drawing alone.
     """
 
-    simulate: Callable[[Config, Sequence[int]], Iterable[SimulatedRecord | RecordFailure]]
-    damage_rows: Callable[[Config, Sequence[int]], Iterable[Mapping[str, object]]]
-    quantities: Callable[[Config], Sequence[Column]]
-    to_compile: Callable[[Config], Sequence[CompilationPart]] = _nothing
-    life_rows: Callable[[Config, int], Mapping[str, Sequence[Mapping[str, object]]]] = _no_life
-    damage_sizes: Callable[[Config, int], Mapping[str, Mapping[str, object]]] = _no_sizes
+    simulate: Callable[[SetDesign, Sequence[int]], Iterable[SimulatedRecord | RecordFailure]]
+    damage_rows: Callable[[SetDesign, Sequence[int]], Iterable[Mapping[str, object]]]
+    quantities: Callable[[SetDesign], Sequence[Column]]
+    to_compile: Callable[[SetDesign], Sequence[CompilationPart]] = _nothing
+    life_rows: Callable[[SetDesign, int], Mapping[str, Sequence[Mapping[str, object]]]] = _no_life
+    damage_sizes: Callable[[SetDesign, int], Mapping[str, Mapping[str, object]]] = _no_sizes
 
-    def simulation(self, config: Config) -> ChunkSimulation:
+    def simulation(self, design: SetDesign) -> ChunkSimulation:
         """Return what makes rows of a set, with its columns, those of `internals/` too where it stores some."""
         from siggen.sets.drawn import set_columns
 
-        columns = set_columns(config, () if config.internals is None else self.quantities(config))
-        return ChunkSimulation(columns, partial(self.simulate, config))
+        columns = set_columns(design, () if design.stored is None else self.quantities(design))
+        return ChunkSimulation(columns, partial(self.simulate, design))
 
 
 def physics() -> Physics:

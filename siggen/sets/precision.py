@@ -14,12 +14,11 @@ from dataclasses import asdict, dataclass
 from itertools import zip_longest
 from pathlib import Path
 from random import Random
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from siggen.columns.record import ChannelColumn
-from siggen.dataset.card_making import stated_tolerance
 from siggen.dataset.chunk import Chunk
 from siggen.dataset.manifest import PHYSICS, read_manifest
 from siggen.dataset.reading import Dataset, as_record
@@ -28,12 +27,10 @@ from siggen.dataset.storage import LocalFolder
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of, running
 from siggen.errors import DatasetError
+from siggen.gearbox.design import SetDesign
 from siggen.sensors.quantity import ACCELERATION, STILL_M_S2
 from siggen.sets import physics as contents
-from siggen.sets.verification import stored_config, why_not_again
-
-if TYPE_CHECKING:
-    from siggen.config import Config
+from siggen.sets.verification import design_of_set, why_not_again
 
 FIRST_STEPS, MOST_STEPS = 16, 512
 """Per sample, of the first two references and of the last one."""
@@ -130,17 +127,17 @@ def measure_precision(
     manifest = read_manifest(storage)
     if reason := why_not_again(manifest, count):
         raise DatasetError(f"{storage.location}: {reason}")
-    dataset, config = Dataset(storage), stored_config(storage, manifest)
-    chosen = chosen_records(dataset, [state.name for state in config.states], count)
+    dataset, design = Dataset(storage), design_of_set(storage, manifest)
+    chosen = chosen_records(dataset, design.state_names, count)
     ids = sorted(chosen)
     own = engine_of(engine, 0 if engine is None and workers is None else workers)
-    delivered = dict(_again(own, unrounded(config), ids))
+    delivered = dict(_again(own, design.unrounded(), ids))
     compared = []
-    for done, fine in enumerate(_references(own, unrounded(config), ids, dataset.channels), start=1):
+    for done, fine in enumerate(_references(own, design.unrounded(), ids, dataset.channels), start=1):
         compared.append(_compared(dataset.channels, chosen[fine.record_id], delivered.pop(fine.record_id), fine))
         if show is not None:
             show(done, len(ids))
-    found = _found(config, ids, compared)
+    found = _found(design, ids, compared)
     with storage.writing():
         storage.put(PHYSICS, sealed({**asdict(found), "largest": found.largest, "within": found.within}))
     return found
@@ -166,16 +163,16 @@ class _Compared(NamedTuple):
 
 
 def _references(
-    engine: Engine, config: Config, ids: Sequence[int], channels: Sequence[ChannelColumn]
+    engine: Engine, design: SetDesign, ids: Sequence[int], channels: Sequence[ChannelColumn]
 ) -> Iterator[_Reference]:
     """Yield every record by a reference that agrees with one of half the steps, or by the finest."""
     steps, left = FIRST_STEPS, list(ids)
-    coarse = dict(_again(engine, reference_config(config, steps), left))
-    agreeing = AGREEING * (stated_tolerance(config) or config.dynamics.integration_tolerance)
+    coarse = dict(_again(engine, design.by_reference(steps), left))
+    agreeing = AGREEING * design.integration_tolerance
     while left:
         steps *= 2
         done = set()
-        for record_id, fine in _again(engine, reference_config(config, steps), left):
+        for record_id, fine in _again(engine, design.by_reference(steps), left):
             apart = record_error(channels, coarse[record_id], fine)
             coarse[record_id] = fine
             if apart <= agreeing or steps >= MOST_STEPS:
@@ -192,41 +189,29 @@ def _compared(
     return _Compared(state, record_error(channels, delivered, fine.record), label, fine.steps, fine.apart)
 
 
-def _found(config: Config, ids: Sequence[int], compared: Sequence[_Compared]) -> Precision:
+def _found(design: SetDesign, ids: Sequence[int], compared: Sequence[_Compared]) -> Precision:
     """Return what was found of the records of a set."""
-    tolerance = stated_tolerance(config)
+    tolerance = design.tolerance
     above = [] if tolerance is None else [one for one in compared if not one.error <= tolerance]
     told = sum(tolerance is not None and one.label > tolerance for one in above)
-    errors = {state.name: [one.error for one in compared if one.state == state.name] for state in config.states}
+    errors = {state: [one.error for one in compared if one.state == state] for state in design.state_names}
     reference = f"runge_kutta, up to {max(one.steps for one in compared)} steps per sample"
     apart = max(one.apart for one in compared)
     return Precision(
-        config.identity, tuple(ids), reference, apart, told, len(above) - told, tolerance, _by_state(errors)
+        design.identity, tuple(ids), reference, apart, told, len(above) - told, tolerance, _by_state(errors)
     )
 
 
-def _again(engine: Engine, config: Config, ids: Sequence[int]) -> Iterator[tuple[int, Mapping[str, Any]]]:
+def _again(engine: Engine, design: SetDesign, ids: Sequence[int]) -> Iterator[tuple[int, Mapping[str, Any]]]:
     """Yield record after record of a configuration, as they are done."""
     tasks = [Chunk("precision", range(record_id, record_id + 1)) for record_id in ids]
-    with running(engine, contents.physics().simulation(config), tasks) as results:
+    with running(engine, contents.physics().simulation(design), tasks) as results:
         for index, result in results:
             if result.failures:
                 failure = result.failures[0]
-                method = f"{config.dynamics.method}, {config.dynamics.steps_per_sample} steps per sample"
+                method = f"{design.method}, {design.steps_per_sample} steps per sample"
                 raise DatasetError(f"record {ids[index]} fails with {method}: {failure.status} ({failure.reason})")
             yield ids[index], as_record(result.batch())
-
-
-def unrounded(config: Config) -> Config:
-    """Return the same configuration with converters that do not round."""
-    return config.model_copy(update={"sensors": tuple(one.model_copy(update={"bits": None}) for one in config.sensors)})
-
-
-def reference_config(config: Config, steps: int) -> Config:
-    """Return the same configuration, integrated by the reference with so many steps per sample."""
-    from siggen.config import by_reference  # reading needs no model of the configuration
-
-    return config.model_copy(update={"dynamics": by_reference(config.dynamics, steps)})
 
 
 def chosen_records(dataset: Dataset, states: Sequence[str], count: int) -> dict[int, str]:

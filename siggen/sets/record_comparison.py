@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from siggen.dataset.chunk import ChunkResult
 from siggen.dataset.reading import as_internals, as_record
 from siggen.errors import counted
-
-if TYPE_CHECKING:
-    from siggen.config import Config
+from siggen.gearbox.design import SetDesign
 
 LABEL_TOLERANCE = 1e-6
 """Relative difference that other instructions and versions may make in a label: well above rounding, below meaning."""
@@ -21,20 +19,25 @@ PULSE_TOLERANCE_S = 1e-9
 
 
 def result_difference(
-    config: Config, stored: Mapping[str, Any], internals: Mapping[str, Any] | None, result: ChunkResult, *, exact: bool
+    design: SetDesign,
+    stored: Mapping[str, Any],
+    internals: Mapping[str, Any] | None,
+    result: ChunkResult,
+    *,
+    exact: bool,
 ) -> str:
     """Return in what a stored record differs from the result of a chunk that holds it alone, or an empty string."""
     if result.failures:
         return f"now fails: {result.failures[0].status} ({result.failures[0].reason})"
     batch = result.internals_batch()
     again = as_internals(batch) if batch is not None and batch.num_rows else None
-    found = difference(config, stored, as_record(result.batch()), exact=exact)
+    found = difference(design, stored, as_record(result.batch()), exact=exact)
     return found or internal_difference(internals, again, exact=exact)
 
 
-def difference(config: Config, stored: Mapping[str, Any], again: Mapping[str, Any], *, exact: bool) -> str:
+def difference(design: SetDesign, stored: Mapping[str, Any], again: Mapping[str, Any], *, exact: bool) -> str:
     """Return in what two versions of a record differ, or an empty string."""
-    steps = {} if exact else _steps(config)
+    steps = {} if exact else _steps(design)
     if stored.keys() != again.keys():
         return f"it has other columns: {', '.join(sorted(stored.keys() ^ again.keys()))[:80]}"
     for name, before in stored.items():
@@ -75,12 +78,12 @@ def _same_label(before: object, now: object, *, exact: bool) -> bool:
     return before == now or abs(before - now) <= LABEL_TOLERANCE * max(1.0, abs(before))
 
 
-def _steps(config: Config) -> dict[str, float]:
+def _steps(design: SetDesign) -> dict[str, float]:
     """Return the converter's step of every signal column; without one, the rounding of float32 at full range."""
     from siggen.sensing.measurement import converter_step
 
     steps: dict[str, float] = {}
-    for sensor in config.sensors:
+    for sensor in design.sensors:
         step = sensor.converter_step or converter_step(sensor.limit, 24)
         steps |= {sensor.quantity.column(name): step for name, _ in sensor.channels}
     return steps

@@ -11,7 +11,7 @@ import hashlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -26,7 +26,6 @@ from siggen.columns.record import (
     schema_metadata,
 )
 from siggen.dataset.environment import environment
-from siggen.dataset.folder import config_bytes
 from siggen.dataset.id_ranges import id_ranges
 from siggen.dataset.manifest import (
     BLIND,
@@ -46,11 +45,9 @@ from siggen.dataset.shard import FileFacts, write_table
 from siggen.dataset.sidecar import Sidecar, put_sidecar
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError
+from siggen.gearbox.design import SetDesign
 from siggen.keys.column import list_of
 from siggen.sets.drawn import set_columns
-
-if TYPE_CHECKING:
-    from siggen.config import Config
 
 IDS = ("record_id", "specimen_id", "state_id", "state", "operating_point_id", "repeat", "split")
 LABELS = (
@@ -63,21 +60,21 @@ Row = Mapping[str, Any]
 
 
 def write_recorded_set(
-    config: Config,
+    design: SetDesign,
     folder: Path,
     rows: Sequence[Row],
     origin: pa.Schema,
     facts: Mapping[str, Any],
     card: str,
     *,
-    measured: Config | None = None,
+    measured: SetDesign | None = None,
     life: Mapping[str, pa.Table] | None = None,
 ) -> Path:
     """Write rows with signals into a new folder that `siggen.open` reads; return the folder.
 
     Parameters
     ----------
-    config : Config
+    design : SetDesign
         Gives channels, rate and the types of the labels; stands in the folder.
     folder : Path
         New or empty.
@@ -90,7 +87,7 @@ def write_recorded_set(
         What `injected.json` says, of blind rows `blind.json`.
     card : str
         README.md.
-    measured : Config, optional
+    measured : SetDesign, optional
         What blind rows were made of. It gives their channels, and nothing else of it stands in the folder.
     life : mapping of str to pyarrow.Table, optional
         Tables of `life/` by name, with the column `split`.
@@ -104,8 +101,8 @@ def write_recorded_set(
     if storage.names():
         raise DatasetError(f"{folder}: is not empty; give a new folder")
     samples = min(len(signal) for row in rows for signal in row["signals"])
-    identity, heard, own_facts = _identity(rows, config.identity), measured or config, BLIND if measured else INJECTED
-    own, others = set_columns(config), set_columns(heard)
+    identity, heard, own_facts = _identity(rows, design.identity), measured or design, BLIND if measured else INJECTED
+    own, others = set_columns(design), set_columns(heard)
     schema = _schema(own, others, origin, samples)
     shares = {split: [row for row in rows if row["split"] == split] for split in SPLITS}
     sidecars = [_write_rows(storage, schema, split, identity, own) for split, own in shares.items() if own]
@@ -115,16 +112,16 @@ def write_recorded_set(
         for sidecar in sidecars
         for name, table in (life or {}).items()
     ]
-    storage.put(CONFIG, config_bytes(config))
+    storage.put(CONFIG, design.text.encode())
     storage.put(CARD, card.encode())
     storage.put(own_facts, json_bytes(facts))
     about = {
-        "name": f"{config.name}_{'blind' if measured else 'recorded'}",
+        "name": f"{design.name}_{'blind' if measured else 'recorded'}",
         "identity": identity,
-        "seed": config.seed,
+        "seed": design.seed,
         "specimens": len({row["specimen_id"] for row in rows}),
-        "fs_hz": float(config.fs_hz),
-        "duration_s": samples / float(config.fs_hz),
+        "fs_hz": float(design.fs_hz),
+        "duration_s": samples / float(design.fs_hz),
         "rows_per_group": GROUP_ROWS,
         "channels": [asdict(channel) for channel in others.channels],
         "columns": listed_columns(schema),

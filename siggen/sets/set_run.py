@@ -7,17 +7,15 @@ from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from siggen.columns.internals import internals_group_rows
 from siggen.columns.record import RecordFailure, SetColumns, listed_columns, record_schema
 from siggen.dataset.card import card
-from siggen.dataset.card_making import stated_tolerance
 from siggen.dataset.chunk import ChunkSimulation
 from siggen.dataset.environment import environment, fingerprint
 from siggen.dataset.excerpt import Excerpt, Excerpts
 from siggen.dataset.extensions import EXTENSIONS
-from siggen.dataset.folder import config_bytes
 from siggen.dataset.label_tables import write_tables
 from siggen.dataset.manifest import CARD, CONFIG, MANIFEST, RUN, SPLITS, build_manifest, read_manifest
 from siggen.dataset.object_name import SIDECAR_FOLDER, sidecar_name
@@ -28,6 +26,7 @@ from siggen.dataset.sidecar import Sidecar
 from siggen.dataset.storage import Storage
 from siggen.engines.protocol import Engine
 from siggen.errors import EXIT_INTERRUPTED, SiggenError, counted
+from siggen.gearbox.design import SetDesign
 from siggen.planning.plan import ShardPlan, rows_per_group, shards
 from siggen.sets import physics as contents
 from siggen.sets.committed_shards import usable_shards
@@ -38,26 +37,23 @@ from siggen.sets.run_journal import Events, RunJournal
 from siggen.sets.shard_making import ShardMaking
 from siggen.sets.shard_work import GroupRows
 
-if TYPE_CHECKING:
-    from siggen.config import Config
 
-
-def manifest_facts(config: Config, columns: SetColumns) -> dict[str, Any]:
+def manifest_facts(design: SetDesign, columns: SetColumns) -> dict[str, Any]:
     """Return what the manifest says of a set beside its files."""
     internals = [{"name": c.name, "unit": c.unit, "meaning": c.meaning} for c in columns.quantities]
     return {
         **({"internals": internals} if internals else {}),
-        "name": config.name,
-        "identity": config.identity,
-        "seed": config.seed,
-        "specimens": config.specimens,
-        "fs_hz": float(config.fs_hz),
-        "duration_s": float(config.duration_s),
-        "rows_per_group": rows_per_group(config),
+        "name": design.name,
+        "identity": design.identity,
+        "seed": design.seed,
+        "specimens": design.specimens,
+        "fs_hz": float(design.fs_hz),
+        "duration_s": float(design.duration_s),
+        "rows_per_group": rows_per_group(design),
         "channels": [asdict(channel) for channel in columns.channels],
         "columns": listed_columns(record_schema(columns)),
         "drivetrain": asdict(columns.drivetrain),
-        **({} if (tolerance := stated_tolerance(config)) is None else {"integration_tolerance": tolerance}),
+        **({} if design.tolerance is None else {"integration_tolerance": design.tolerance}),
     }
 
 
@@ -102,7 +98,7 @@ def _silent(done: int, total: int) -> None:
 
 
 def set_run(
-    config: Config,
+    design: SetDesign,
     storage: Storage,
     engine: Engine,
     progress: Progress | None,
@@ -115,18 +111,18 @@ def set_run(
     journal = RunJournal(events, limit=limit)
     with journal.driver.during("planning"):
         physics = contents.physics()
-        simulation = physics.simulation(config)
-        planned = planned_shards(config, earlier)
-    run = SetRun(config, storage, engine, physics, simulation, progress or _silent, interruption, planned, journal)
+        simulation = physics.simulation(design)
+        planned = planned_shards(design, earlier)
+    run = SetRun(design, storage, engine, physics, simulation, progress or _silent, interruption, planned, journal)
     run.trusted = frozenset({fingerprint(run.environment)})
     run.total = sum(shard.record_count for shard in planned)
-    journal.start(config.name, config.identity, str(storage.location), engine, run.total, len(planned))
+    journal.start(design.name, design.identity, str(storage.location), engine, run.total, len(planned))
     return run
 
 
-def planned_shards(config: Config, earlier: Sequence[int] = ()) -> list[ShardPlan]:
+def planned_shards(design: SetDesign, earlier: Sequence[int] = ()) -> list[ShardPlan]:
     """Return the shards of a set in the order in which they are made; `earlier` as for `plan.shards`."""
-    return [shard for split in SPLITS for shard in shards(config, split, earlier)]
+    return [shard for split in SPLITS for shard in shards(design, split, earlier)]
 
 
 @dataclass(slots=True)
@@ -143,7 +139,7 @@ class SetRun:
         Sentences on shards that another version made.
     """
 
-    config: Config
+    design: SetDesign
     storage: Storage
     engine: Engine
     physics: contents.Physics
@@ -165,18 +161,18 @@ class SetRun:
     notes: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        maker = Maker(self.config.identity, fingerprint(self.environment), self.environment)
+        maker = Maker(self.design.identity, fingerprint(self.environment), self.environment)
         self.pieces = Pieces(self.storage, maker, self.simulation.columns)
-        physics, config, columns = self.physics, self.config, self.simulation.columns
-        damage, lives = partial(physics.damage_rows, config), partial(physics.life_rows, config)
+        physics, design, columns = self.physics, self.design, self.simulation.columns
+        damage, lives = partial(physics.damage_rows, design), partial(physics.life_rows, design)
         self.excerpts = Excerpts(columns, self.storage, maker, damage, lives)
         self.making = ShardMaking(
             self.storage,
             self.engine,
             self.simulation,
-            partial(physics.to_compile, config),
-            config.state_names,
-            GroupRows(rows_per_group(config), internals_group_rows(columns) if columns.quantities else 0),
+            partial(physics.to_compile, design),
+            design.state_names,
+            GroupRows(rows_per_group(design), internals_group_rows(columns) if columns.quantities else 0),
             self.interruption,
             self.journal,
             self.pieces,
@@ -194,7 +190,7 @@ class SetRun:
         """
         with self._told():
             if not self.storage.exists(CONFIG):
-                self.storage.put(CONFIG, config_bytes(self.config))
+                self.storage.put(CONFIG, self.design.text.encode())
             taken_over = self.make(self.planned)
             return self.conclude(taken_over)
 
@@ -202,7 +198,7 @@ class SetRun:
         """Make some shards and nothing else; `rows` and `failures` are theirs. Raises as `finish`."""
         with self._told():
             if not self.storage.exists(CONFIG):
-                self.storage.put(CONFIG, config_bytes(self.config))
+                self.storage.put(CONFIG, self.design.text.encode())
             taken_over = self.make(wanted)
         sidecars = [self.sidecars[shard.key] for shard in wanted]
         return Generation(
@@ -245,7 +241,7 @@ class SetRun:
     def take_over(self, wanted: Sequence[ShardPlan]) -> None:
         """Find the shards that earlier runs committed with a trusted fingerprint."""
         missing = [shard for shard in wanted if shard.key not in self.sidecars]
-        check, of_set = self.interruption.check, (self.config.identity, self.config.state_names)
+        check, of_set = self.interruption.check, (self.design.identity, self.design.state_names)
         for sidecar in usable_shards(*of_set, self.storage, missing, self.trusted, self.notes, check):
             self.accept(sidecar)
 
@@ -262,19 +258,19 @@ class SetRun:
 
     def _conclude(self, sidecars: Sequence[Sidecar], taken_over: int) -> dict[str, Any]:
         """Write configuration, tables, card and run.json; the manifest comes last and makes the set a finished one."""
-        self.storage.put(CONFIG, config_bytes(self.config))
+        self.storage.put(CONFIG, self.design.text.encode())
         tables, columns = [], self.simulation.columns
         for split in SPLITS:
             of_split = [sidecar for sidecar in sidecars if sidecar.split == split]
             if of_split:
                 tables += write_tables(self.storage, columns, split, self._excerpts(of_split))
             self.interruption.check()
-        self.storage.put(CARD, card(self.config, sidecars, columns).encode())
+        self.storage.put(CARD, card(self.design, sidecars, columns).encode())
         written = [CONFIG, CARD, *([EXTENSIONS] if self.storage.exists(EXTENSIONS) else [])]
-        manifest = build_manifest(self.storage, manifest_facts(self.config, columns), sidecars, tables, written)
+        manifest = build_manifest(self.storage, manifest_facts(self.design, columns), sidecars, tables, written)
         counts = {"made": self.made, "taken_over": taken_over}
         facts = run_facts(
-            self.config.duration_s, self.engine, sidecars, self.journal, **counts, environment=self.environment
+            self.design.duration_s, self.engine, sidecars, self.journal, **counts, environment=self.environment
         )
         self.pieces.clear()
         self.excerpts.clear()

@@ -1,4 +1,4 @@
-"""A trial of a configuration: short records of some states and gearboxes: what is lost, and what damage does.
+"""A trial of a set: short records of some states and gearboxes: what is lost, and what damage does.
 
 A record is lost where the motion leaves the model. It does so within the first turns: of three machines with 8
 gearboxes each, records of 8 and of 60 turns lost the same number in all 15 states, 0 to 5 of 8.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from math import ceil, sqrt
+from math import sqrt
 from statistics import median
 from typing import TYPE_CHECKING
 
@@ -19,7 +19,7 @@ from siggen.sets.record_cost import RecordTime, SetCost, set_cost, timed
 
 if TYPE_CHECKING:
     from siggen.columns.record import SimulatedRecord
-    from siggen.config import Config
+    from siggen.gearbox.design import SetDesign
 
 RECORDS = 3
 """That are tried unless told otherwise: of as many states, evenly spread over two gearboxes, or of a new and a pitted
@@ -104,22 +104,24 @@ class SetTrial:
     cost: SetCost
 
 
-def trial(config: Config, gearboxes: int | None = None, progress: Callable[[int, int], None] | None = None) -> SetTrial:
+def trial(
+    design: SetDesign, gearboxes: int | None = None, progress: Callable[[int, int], None] | None = None
+) -> SetTrial:
     """Return what short records of the first gearboxes of a set lose, what damage does, and what all records cost.
 
     Parameters
     ----------
-    config : Config
+    design : SetDesign
     gearboxes : int, optional
         Of which every state is tried, at most as many as the set has; with several operating points each gearbox runs
         at one of them in turn. By default `RECORDS` records.
     progress : callable, optional
         Called with (records done, records of the trial).
     """
-    short, physics = shortened(config), contents.physics()
-    meshes = _meshes(config)
-    sample = _sample(config, meshes) if gearboxes is None else _every_state(config, gearboxes)
-    found: dict[str, list[SimulatedRecord | RecordFailure]] = {name: [] for name in config.state_names}
+    short, physics = design.shortened(TURNS), contents.physics()
+    meshes = _meshes(design)
+    sample = _sample(design, meshes) if gearboxes is None else _every_state(design, gearboxes)
+    found: dict[str, list[SimulatedRecord | RecordFailure]] = {name: [] for name in design.state_names}
     times: list[RecordTime] = []
     fresh = 0  # place of the second gearbox's first record
     for specimen, picked in sample:
@@ -130,9 +132,9 @@ def trial(config: Config, gearboxes: int | None = None, progress: Callable[[int,
         for i, result in zip(places, timed(results, times), strict=True):
             if progress is not None:
                 progress(len(times) - 1, sum(len(picked) for _, picked in sample))
-            found[config.state_names[i]].append(result)
-    count = 0 if config.life is not None else min(max(1, SIZES // (meshes * config.state_count)), config.specimens)
-    sizes = [physics.damage_sizes(config, specimen) for specimen in range(count)]
+            found[design.state_names[i]].append(result)
+    count = 0 if design.lives else min(max(1, SIZES // (meshes * design.state_count)), design.specimens)
+    sizes = [physics.damage_sizes(design, specimen) for specimen in range(count)]
     states = tuple(
         _state_trial(name, results, [one[name] for one in sizes if name in one]) for name, results in found.items()
     )
@@ -140,43 +142,38 @@ def trial(config: Config, gearboxes: int | None = None, progress: Callable[[int,
     return SetTrial(tuple(one for one in states if one.tried or count), count, cost)
 
 
-def _meshes(config: Config) -> int:
+def _meshes(design: SetDesign) -> int:
     """Return how many pairs of spur gears take as long as the meshes of a gearbox."""
-    if config.planetary is not None:
-        return 2 * len(config.planetary.positions_deg)
-    pairs = (config.gears, *(stage.gears for stage in config.stages))
-    return sum(1 if one.helix_deg == 0.0 else DEAR for one in pairs)
+    return sum(DEAR if helical else 1 for helical in design.helical_meshes)
 
 
 Sample = Sequence[tuple[int, Sequence[int]]]
 """Gearboxes, each with the states, or inspections, of it that are tried."""
 
 
-def _every_state(config: Config, gearboxes: int) -> Sample:
-    return [(specimen, range(config.state_count)) for specimen in range(min(gearboxes, config.specimens))]
+def _every_state(design: SetDesign, gearboxes: int) -> Sample:
+    return [(specimen, range(design.state_count)) for specimen in range(min(gearboxes, design.specimens))]
 
 
-def _sample(config: Config, meshes: int) -> Sample:
+def _sample(design: SetDesign, meshes: int) -> Sample:
     """Return what stands for all: the first record loads code, so a second gearbox tells what one costs."""
-    if config.life is not None:
-        specimen, inspections = _pitted(config)
-        return [(specimen, inspections), *([((specimen + 1) % config.specimens, (0,))] if config.specimens > 1 else [])]
+    if design.lives:
+        specimen, inspections = _pitted(design)
+        return [(specimen, inspections), *([((specimen + 1) % design.specimens, (0,))] if design.specimens > 1 else [])]
     if meshes >= DEAR:
         return [(0, (0,))]
-    picked = _spread(config.state_count, RECORDS)
-    return [(0, picked[-1:]), (1, picked[: RECORDS - 1])] if config.specimens > 1 else [(0, picked)]
+    picked = _spread(design.state_count, RECORDS)
+    return [(0, picked[-1:]), (1, picked[: RECORDS - 1])] if design.specimens > 1 else [(0, picked)]
 
 
-def _pitted(config: Config) -> tuple[int, tuple[int, ...]]:
+def _pitted(design: SetDesign) -> tuple[int, tuple[int, ...]]:
     """Return a gearbox that shows both whole and pitted teeth, and an inspection of each."""
-    from siggen.gearbox.configured import gearbox_life
-
-    for specimen in range(min(config.specimens, LOOKED_THROUGH)):
-        found = gearbox_life(config, specimen)
+    for specimen in range(min(design.specimens, LOOKED_THROUGH)):
+        found = design.life(specimen)
         pitted = [k for k, age in enumerate(found.ages_h) if found.clock.time(age) >= found.course.ends.first_pit]
         if pitted and pitted[0] > 0:
             return specimen, (0, pitted[len(pitted) // 2])
-    return 0, (0, len(gearbox_life(config, 0).ages_h) - 1)
+    return 0, (0, len(design.life(0).ages_h) - 1)
 
 
 def _spread(count: int, most: int) -> list[int]:
@@ -185,23 +182,11 @@ def _spread(count: int, most: int) -> list[int]:
     return [i * (count - 1) // max(steps, 1) for i in range(steps + 1)]
 
 
-def shortened(config: Config) -> Config:
-    """Return a configuration whose records are short and hold no internal quantities."""
-    from siggen.keys.number import bounds
-
-    slowest_hz = min(abs(bound) for point in config.operating_points for bound in bounds(point.speed_hz))
-    on_gear = any(getattr(one, "gear", "pinion") != "pinion" for one in config.damages)
-    ratio = config.gears.gear.teeth / config.gears.pinion.teeth if on_gear else 1.0
-    wanted_s = TURNS * ratio / max(slowest_hz, TURNS / config.duration_s)
-    duration_s = min(ceil(wanted_s * config.fs_hz) / config.fs_hz, config.duration_s)
-    return config.model_copy(update={"duration_s": duration_s, "internals": None})
-
-
-def _record_ids(config: Config, specimen: int) -> Sequence[int]:
+def _record_ids(design: SetDesign, specimen: int) -> Sequence[int]:
     """Return one record of every state, all at one operating point."""
-    each = len(config.operating_points) * config.repeats
-    point = specimen % len(config.operating_points)
-    return record_ids_of(config, specimen)[point * config.repeats :: each]
+    each = design.points * design.repeats
+    point = specimen % design.points
+    return record_ids_of(design, specimen)[point * design.repeats :: each]
 
 
 def _state_trial(

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from random import Random
 from shlex import quote
-from typing import TYPE_CHECKING
 
 from siggen.columns.versions import SIMULATION_VERSION
 from siggen.dataset.chunk import Chunk
@@ -35,11 +34,9 @@ from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of, running
 from siggen.errors import ConfigError, DatasetError, VerificationError, counted
+from siggen.gearbox.design import SetDesign, stored_design
 from siggen.sets import physics as contents
 from siggen.sets.record_comparison import result_difference
-
-if TYPE_CHECKING:
-    from siggen.config import Config
 
 OWN_FOLDERS = (DATA_FOLDER, INTERNALS_FOLDER, METADATA_FOLDER, DAMAGE_FOLDER, LIFE_FOLDER, SIDECAR_FOLDER)
 
@@ -235,7 +232,7 @@ def _simulate_again(
 ) -> tuple[tuple[int, ...], str, list[Mismatch]]:
     dataset = Dataset(storage)
     try:
-        config = stored_config(storage, dataset.inventory)
+        design = design_of_set(storage, dataset.inventory)
     except (ConfigError, DatasetError) as error:
         why = f"this version of siggen reads the configuration otherwise ({error})"
         return (), f"none: {why}", [Mismatch("records", f"cannot be simulated again: {why}")]
@@ -244,35 +241,31 @@ def _simulate_again(
     exact = {record_id: fingerprint(_environment(dataset, record_id)) == here for record_id in ids}
     tasks = [Chunk("again", range(record_id, record_id + 1)) for record_id in ids]
     mismatches = []
-    function = contents.physics().simulation(config)
+    function = contents.physics().simulation(design)
     chosen = engine_of(engine, 0 if engine is None and workers is None else workers)
     with running(chosen, function, tasks) as results:
         for index, result in results:
             record_id = ids[index]
             stored = dataset.record(record_id)
             internals = dataset.record_internals(record_id) if dataset.internal_columns else None
-            problem = result_difference(config, stored, internals, result, exact=exact[record_id])
+            problem = result_difference(design, stored, internals, result, exact=exact[record_id])
             mismatches += [Mismatch(f"record {record_id}", problem)] if problem else []
     comparison = EXACT if all(exact.values()) else f"{CLOSE} (made with other versions or another CPU family)"
     return tuple(ids), comparison, sorted(mismatches, key=lambda mismatch: mismatch.what)
 
 
-def stored_config(storage: Storage, manifest: Inventory) -> Config:
-    """Return the set's configuration; its identity must be the one that this version computes, too.
+def design_of_set(storage: Storage, manifest: Inventory) -> SetDesign:
+    """Return the set's design; its identity must be the one that this version computes, too.
 
     Raises
     ------
     ConfigError, DatasetError
         If this version reads it otherwise.
     """
-    from siggen.config import STORED_NUMBERS, parse, parse_yaml
-
-    parsed = parse(parse_yaml(storage.get(CONFIG).decode(), CONFIG, STORED_NUMBERS))
-    if parsed.config is None:
-        raise ConfigError(parsed.problems, CONFIG)
-    if parsed.config.identity != manifest.identity:
+    design = stored_design(storage.get(CONFIG), CONFIG)
+    if design.identity != manifest.identity:
         raise DatasetError("its identity differs")
-    return parsed.config
+    return design
 
 
 def _sample(dataset: Dataset, count: int) -> list[int]:

@@ -97,7 +97,7 @@ def record_rotation(specimen: Specimen, record: PlannedRecord) -> Rotation:
     if point.variation is None:
         return Drive(point.speed_hz, angle_rad)
     speed, uniform = point.variation.speed, named_uniforms(specimen.seed, Stream.DRIVE, *record.owner)
-    carrying_hz = point.speed_hz * (1.0 - speed.slip * point.torque_nm / speed.rated_torque_nm)
+    carrying_hz = point.speed_hz * (1.0 - speed.slip * point.torque_nm / specimen.rated_nm)
     ramp = SpeedRamp(speed.start_ratio * carrying_hz, speed.end_ratio * carrying_hz, specimen.sampling.duration_s)
     ripple = Ripple(
         speed.ripple_once,

@@ -7,7 +7,6 @@ from typing import Any
 import pytest
 
 from siggen.checks.damage_notes import damage_notes
-from siggen.gearbox.possible import PossibleGearbox
 from tests.faults.test_damage import PIT, config_with
 
 BOX: dict[str, Any] = {"kind": "spall", "face_length_mm": 20.0, "profile_length_mm": 1.0, "depth_mm": 0.2}
@@ -19,10 +18,10 @@ CLUSTER = {"kind": "clustered", "count": 3, "spread_profile_mm": 0.3, **PIT}
 
 @pytest.mark.parametrize("damages", [[BOX], [CLUSTER, BOX], [PART, BOX], [STRAIGHT]])
 def test_parallel_edges_through_the_face_are_called_idealised(damages: list[dict[str, Any]]) -> None:
-    (note,) = damage_notes(PossibleGearbox(config_with(*damages)))
+    (note,) = damage_notes(config_with(*damages).possible)
     assert "edges are exactly parallel to the axis" in note
 
 
 @pytest.mark.parametrize("damages", [[], [CLUSTER], [PART], [SKEWED], [BOX, SKEWED]])
 def test_nothing_is_said_where_land_is_left_or_edges_are_skewed(damages: list[dict[str, Any]]) -> None:
-    assert not [*damage_notes(PossibleGearbox(config_with(*damages)))]
+    assert not [*damage_notes(config_with(*damages).possible)]

@@ -10,15 +10,15 @@ import yaml
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.gearbox.design import SetDesign
 from tests.config.minimal import by_name, minimal
 from tests.simulated import label_names, simulate
 
 PLAIN = {"name": "bearing", "bits": None, "range_m_s2": 1e6}
 
 
-def loaded(folder: Path, table: dict[str, object]) -> Config:
+def loaded(folder: Path, table: dict[str, object]) -> SetDesign:
     raw = minimal(sensors=by_name([{**PLAIN, "noise_spectrum": table}]), duration_s=1.0)
     (folder / "set.yaml").write_text(yaml.safe_dump(raw, sort_keys=False))
     return load_config(folder / "set.yaml")

@@ -12,11 +12,9 @@ from siggen.checks.loading import load_config
 from siggen.config import inherited, parse_yaml, yaml_text
 from siggen.dynamics.housing.layout import layout
 from siggen.errors import ConfigError
-from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.housing_layout import specimen_layout
 from siggen.gearbox.housing_numbers import plate_numbers
 from siggen.gearbox.pair import gear_pair
-from siggen.gearbox.possible import PossibleGearbox
 from siggen.rig.rig_answers import rig_of
 from siggen.rig.rig_text import rig_text
 from tests.config.minimal import minimal
@@ -69,12 +67,12 @@ def test_the_least_lengths_that_are_let_through_can_be_built(shafts: object, mat
     config = load_config(minimal(dynamics__shafts=shafts, housing__material=material))
     least = {}
     for key in ("length_mm", "height_mm", "width_mm"):
-        section = config.housing.model_copy(update={key: 1.0})
-        (problem,) = housing_problems(PossibleGearbox(config.model_copy(update={"housing": section})))
+        section = config.config.housing.model_copy(update={key: 1.0})
+        (problem,) = housing_problems(config.with_sections(housing=section).possible)
         least[key] = 1.0005 * float(problem.allowed.split("at least ")[1].split(" mm")[0])  # told with four digits
     smallest = load_config(config.canonical() | {"housing": {**config.canonical()["housing"], **least}})
     for specimen_id in range(30):
-        specimen = draw_specimen(smallest, specimen_id)
+        specimen = smallest.gearbox(specimen_id)
         box = layout(specimen.housing.contents, specimen.housing.proportions, specimen.housing.material)
         inner = (
             1e3 * (box.size_m[0] - box.thickness.ends_m),
@@ -90,9 +88,9 @@ def test_small_equal_gears_turn_in_bearings_larger_than_they_are(teeth: str, mod
     """Gears of 14 mm on shafts of 9 mm, as `siggen init` proposes them, under a lid over which nobody gave a height."""
     rig, _ = rig_of({"teeth": teeth, "module": module_mm, "speed": "1450rpm"})
     config = load_config({**inherited(parse_yaml(rig_text(rig, "rig", "bench"), "rig"))})
-    pair = gear_pair(config.gears)
+    pair = gear_pair(config.config.gears)
     for specimen_id in range(config.specimens):
-        specimen = draw_specimen(config, specimen_id)
+        specimen = config.gearbox(specimen_id)
         box = layout(specimen.housing.contents, specimen.housing.proportions, specimen.housing.material)
         assert all(seat.boss_radius_m > seat.bore_radius_m for seat in box.seats.values())
         assert min(seat.y_m for seat in box.seats.values()) > pair.gear.tip_radius_m
@@ -101,10 +99,10 @@ def test_small_equal_gears_turn_in_bearings_larger_than_they_are(teeth: str, mod
 def test_a_length_below_the_least_cannot_be_built() -> None:
     """The check is not stricter than need be: with the bearing and the wall that it counts with, 10 mm less fail."""
     config = load_config(minimal(housing__length_mm=234.0))
-    thick = plate_numbers(config.housing, lambda _: 0.5).model_copy(
+    thick = plate_numbers(config.config.housing, lambda _: 0.5).model_copy(
         update={"bearing": 2.2, "material": "steel", "wall": 1.0}
     )
-    contents, proportions, stuff = specimen_layout(thick, None, gear_pair(config.gears))
+    contents, proportions, stuff = specimen_layout(thick, None, gear_pair(config.config.gears))
     layout(contents, proportions, stuff)
     with pytest.raises(ValueError, match="boss"):
         layout(contents, replace(proportions, end_m=proportions.end_m - 0.01), stuff)
@@ -112,7 +110,7 @@ def test_a_length_below_the_least_cannot_be_built() -> None:
 
 def test_only_plates_of_the_model_with_a_casing_are_looked_at() -> None:
     rigid = {"kind": "rigid"}
-    assert load_config(minimal(housing=rigid, dynamics__shafts=SHAFTS)).housing.kind == "rigid"
+    assert load_config(minimal(housing=rigid, dynamics__shafts=SHAFTS)).config.housing.kind == "rigid"
     load_config(minimal(dynamics__model="8dof"))
 
 

@@ -178,7 +178,7 @@ def test_a_missing_file_is_refused(tmp_path):
 
 
 def test_overrides_are_applied_before_checks():
-    assert load_config(minimal(), ["gears.module_mm=3.5", "specimens=1"]).gears.module_mm == 3.5
+    assert load_config(minimal(), ["gears.module_mm=3.5", "specimens=1"]).config.gears.module_mm == 3.5
     with pytest.raises(ConfigError, match=r"gears\.pinion\.bore_radius_mm"):
         load_config(minimal(), ["gears.pinion.bore_radius_mm=30"])
 
@@ -193,19 +193,19 @@ def test_every_configuration_that_ships_is_usable(path):
 @pytest.mark.parametrize(("name", "records"), [("quickstart", 120), ("../tests/configs/linear_pits", 240)])
 def test_a_first_set_has_few_records_of_4_severities_that_grow(name, records):
     loaded = load_config(CONFIGS / f"{name}.yaml")
-    assert plan(loaded).count == records
-    assert [state.severity for state in loaded.states[:4]] == ["healthy", "slight", "moderate", "severe"]
-    assert all(state.sham for state in loaded.states[4:])
-    assert [loaded.grown_from(i) for i in range(4)] == [None, None, 1, 2]
+    assert len(plan(loaded)) == records
+    assert [state.severity for state in loaded.config.states[:4]] == ["healthy", "slight", "moderate", "severe"]
+    assert all(state.sham for state in loaded.config.states[4:])
+    assert [loaded.config.grown_from(i) for i in range(4)] == [None, None, 1, 2]
 
 
 def test_paper_a_has_the_numbers_that_the_paper_states():
     loaded = load_config(CONFIGS / "paper_a.yaml")
-    assert (loaded.gears.pinion.teeth, loaded.gears.gear.teeth) == (18, 47)
-    assert loaded.operating_points[0].speed_hz == 30.0
+    assert (loaded.config.gears.pinion.teeth, loaded.config.gears.gear.teeth) == (18, 47)
+    assert loaded.config.operating_points[0].speed_hz == 30.0
     assert (loaded.fs_hz, loaded.duration_s) == (51_200.0, 10.0)
-    for state in loaded.states[1:]:
+    for state in loaded.config.states[1:]:
         pit = state.damage
         assert (pit.semi_axis_face_mm, pit.semi_axis_profile_mm, pit.depth_mm) == (0.3, 0.2, 0.4)
         assert pit.first_height_mm == 1.9
-    assert [(s.damage.layers, s.damage.pits_per_layer) for s in loaded.states[1:]] == [(1, 8), (1, 16), (3, 16)]
+    assert [(s.damage.layers, s.damage.pits_per_layer) for s in loaded.config.states[1:]] == [(1, 8), (1, 16), (3, 16)]

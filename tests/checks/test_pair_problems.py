@@ -10,7 +10,6 @@ from siggen.checks.loading import load_config
 from siggen.checks.plausibility import implausible
 from siggen.config import yaml_text
 from siggen.errors import ConfigError
-from siggen.gearbox.possible import PossibleGearbox
 
 PLAIN = str(Path(__file__).parents[1] / "configs" / "linear_pits.yaml")
 SOUND = "{teeth: [18, 47], module_mm: 3, face_width_mm: 20}"
@@ -62,7 +61,7 @@ def test_what_is_implausible_of_a_pair_is_told_once_with_that_pair_and_their_num
     thin = "{teeth: [19, 48], module_mm: 3, face_width_mm: 4}"
     sentences = [
         sentence
-        for sentence in implausible(PossibleGearbox(load_config("quickstart", [f"gears.pairs=[{SOUND}, {thin}]"])))
+        for sentence in implausible(load_config("quickstart", [f"gears.pairs=[{SOUND}, {thin}]"]).possible)
         if "face width over module" in sentence
     ]
     assert len(sentences) == 1

@@ -9,7 +9,6 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.checks.plausibility import implausible
 from siggen.errors import ConfigError
-from siggen.gearbox.possible import PossibleGearbox
 from tests.config.mill import mill, with_machine
 
 SLIPS = {
@@ -47,7 +46,7 @@ RIGID = {"bolts in N/mm", "casing in t"}
 
 
 def told(*source: Any) -> str:
-    return "\n".join(implausible(PossibleGearbox(load_config(*source))))
+    return "\n".join(implausible(load_config(*source).possible))
 
 
 @pytest.mark.parametrize("preset", ["quickstart", "bench", "industrial"])

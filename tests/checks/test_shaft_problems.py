@@ -14,8 +14,6 @@ from siggen.checks.shaft_notes import shaft_notes
 from siggen.checks.tilt_problems import flank_tilts, static_tilt_rad
 from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.errors import ConfigError
-from siggen.gearbox.draw import draw_operating_point, draw_specimen
-from siggen.gearbox.possible import PossibleGearbox
 from siggen.gearbox.specimen import Specimen
 from siggen.names import Side
 from siggen.record.specimen_state import specimen_state
@@ -65,8 +63,8 @@ def test_a_law_that_feels_no_tilt_is_refused() -> None:
 
 
 def test_plan_says_what_limits_shafts() -> None:
-    assert not any("outside_model" in note for note in shaft_notes(PossibleGearbox(load_config(minimal()))))
-    assert any("outside_model" in note for note in shaft_notes(PossibleGearbox(load_config(with_shafts()))))
+    assert not any("outside_model" in note for note in shaft_notes(load_config(minimal()).possible))
+    assert any("outside_model" in note for note in shaft_notes(load_config(with_shafts()).possible))
 
 
 @pytest.mark.parametrize("helix_deg", [0.0, 12.0, -12.0])
@@ -79,9 +77,9 @@ def test_the_tilt_of_plan_is_that_of_the_motion(helix_deg: float) -> None:
     healthy = {"gears": gears, "dynamics": smooth, "states": {"healthy": {}}}
     config = load_config(uneven | healthy)
     config = load_config(config.canonical() | {"operating_points": [{"speed_hz": 20.0, "torque_nm": 45.0}]})
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     state = specimen_state(specimen, 0)
-    motion = specimen_motion(specimen.law, state.mesh, draw_operating_point(config, 0, 0), 1e-5)
+    motion = specimen_motion(specimen.law, state.mesh, config.drawn_points(0)[0], 1e-5)
     found = drawn_tilt_rad(specimen, 45.0)
     assert abs(found) > 1e-6
     assert found == pytest.approx(motion.pair_equations.static[0, 2], rel=1e-9)
@@ -127,9 +125,9 @@ def drawn_tilt_rad(specimen: Specimen, torque_nm: float) -> float:
 def test_presets_stay_within_the_tilt_of_the_model(which: str) -> None:
     # By the drawn gearboxes, where the check takes places at equal shares: half of them at least have room.
     config = load_config(ROOT / "configs" / f"{which}.yaml")
-    gearbox, rooms = PossibleGearbox(config), []
+    gearbox, rooms = config.possible, []
     for number in range(9):
-        specimen = draw_specimen(config, number)
+        specimen = config.gearbox(number)
         tilt_rad = drawn_tilt_rad(specimen, gearbox.largest_torque_nm)
         rooms.append(abs(tilt_rad) / flank_tilts(gearbox, specimen.pair).limit_rad)
     assert 0.0 < np.median(rooms) < 1.0
@@ -155,9 +153,9 @@ def test_a_face_pushed_askew_until_it_rests_on_one_end_is_no_reason_to_lose_a_re
 
 def test_a_tilt_in_motion_at_which_an_end_of_the_face_meets_the_other_flank_is_refused() -> None:
     config = load_config(with_shafts())
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     state = specimen_state(specimen, 0)
-    motion = specimen_motion(specimen.law, state.mesh, draw_operating_point(config, 0, 0), 1e-5)
+    motion = specimen_motion(specimen.law, state.mesh, config.drawn_points(0)[0], 1e-5)
     turn = motion.structure.mesh.tilt
     room_m = motion.law.backlash_m + motion.pair_equations.static[0, 1]
     for share, refused in ((0.99, False), (1.01, True)):

@@ -10,7 +10,6 @@ from siggen.checks.loading import load_config
 from siggen.dynamics.structure.free_rotation import static_solution
 from siggen.dynamics.time.equations import mesh_springs
 from siggen.errors import ConfigError, Problem
-from siggen.gearbox.draw import draw_specimen
 from siggen.specimen.staged_structure import axis_places_m
 from siggen.specimen.structure import structure
 from tests.config.minimal import by_name
@@ -39,7 +38,7 @@ def test_gears_of_one_shaft_need_one_and_a_half_times_their_faces_between_its_be
     assert problem.path == "machine.shafts.1.span_mm"
     assert problem.received == "74.9 mm for faces of 50 mm together"
     assert "at least 75 mm" in problem.allowed
-    assert load_config(one_more(span_mm=75.0)).stages
+    assert load_config(one_more(span_mm=75.0)).config.stages
 
 
 @pytest.mark.parametrize(
@@ -51,7 +50,7 @@ def test_axes_a_little_apart_are_refused(gears: dict[str, Any]) -> None:
     apart_mm = abs(65.0 - 0.5 * gears["module_mm"] * (17 + gears["gear"]["teeth"]))
     assert f"the axis of slow_shaft stands {apart_mm:.4g} mm from that of pinion_shaft" in problem.received
     assert "at least 32 mm, the radii of both shafts" in problem.allowed
-    assert load_config(one_more(direction_deg=120.0, gears=gears)).stages
+    assert load_config(one_more(direction_deg=120.0, gears=gears)).config.stages
 
 
 def test_a_direction_that_is_drawn_is_refused_where_one_gearbox_could_not_be() -> None:
@@ -63,7 +62,7 @@ def test_a_direction_that_is_drawn_is_refused_where_one_gearbox_could_not_be() -
 def test_a_coaxial_gearbox_stands_and_its_layshaft_alone_holds_the_casing_against_turning(direction_deg: float) -> None:
     """Both shafts of one axis have no arm about it: a force times the centre distance is the torque, in and out."""
     config = load_config({**one_more(direction_deg=direction_deg, gears=EQUAL), "dynamics": {"model": "8dof"}})
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     places = axis_places_m(specimen)
     assert places["slow_bearing"] == pytest.approx(places["pinion_bearing"], abs=1e-15)
     found, torque_nm = structure(specimen), 20.0

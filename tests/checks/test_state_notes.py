@@ -7,7 +7,6 @@ import pytest
 from siggen.checks.damage_notes import state_notes
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
-from siggen.gearbox.possible import PossibleGearbox
 from tests.config.minimal import by_name, minimal
 
 CHANGED = {"name": "changed", "severity": "moderate", "changes": {"dynamics.backlash_um": {"add": 40}}}
@@ -15,7 +14,7 @@ CHANGED = {"name": "changed", "severity": "moderate", "changes": {"dynamics.back
 
 def notes(fault: str) -> tuple[str, ...]:
     states = by_name([{"name": "healthy"}, {**CHANGED, "fault": fault}])
-    return tuple(state_notes(PossibleGearbox(load_config(minimal(states=states)))))
+    return tuple(state_notes(load_config(minimal(states=states)).possible))
 
 
 def test_a_slip_is_pointed_out_and_a_word_of_ones_own_is_not() -> None:

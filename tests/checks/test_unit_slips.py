@@ -10,9 +10,8 @@ import yaml
 
 from siggen.checks.loading import load_config
 from siggen.checks.plausibility import implausible
-from siggen.config import Config
 from siggen.errors import ConfigError, UsageError
-from siggen.gearbox.possible import PossibleGearbox
+from siggen.gearbox.design import SetDesign
 from siggen.keys.distributions import DRAWN
 from siggen.keys.section import Section
 
@@ -58,7 +57,7 @@ def number_keys(section: Section, path: str = "") -> Iterator[str]:
                     yield from number_keys(item, f"{here}.{key}")
 
 
-def written(config: Config, path: str) -> Any:
+def written(config: SetDesign, path: str) -> Any:
     value = config.canonical()
     for key in path.split("."):
         value = value[int(key)] if isinstance(value, list) else value[key]
@@ -74,14 +73,14 @@ def times(value: Any, factor: float) -> Any:
 def silent_slips(preset: str, factors: tuple[float, ...]) -> tuple[int, list[tuple[str, float]]]:
     """Return how many slips were tried, and those that nothing is said of."""
     config = load_config(preset)
-    before, keys = set(implausible(PossibleGearbox(config))), [*number_keys(config)]
+    before, keys = set(implausible(config.possible)), [*number_keys(config.config)]
     silent = []
     for key in keys:
         for factor in factors:
             slip = yaml.safe_dump(times(written(config, key), factor), default_flow_style=True, width=1000)
             change = f"{key}={slip.removesuffix(chr(10) + '...' + chr(10))}"
             try:
-                if not set(implausible(PossibleGearbox(load_config(preset, [change])))) - before:
+                if not set(implausible(load_config(preset, [change]).possible)) - before:
                     silent.append((key, factor))
             except (ConfigError, UsageError):
                 continue

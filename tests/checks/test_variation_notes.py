@@ -5,12 +5,11 @@ from __future__ import annotations
 import pytest
 
 from siggen.checks.variation_notes import reversal_notes
-from siggen.gearbox.possible import PossibleGearbox
-from tests.config.minimal import config
+from tests.config.minimal import design
 
 
 def reversals(**torque) -> list[str]:
-    return list(reversal_notes(PossibleGearbox(config(variation={"torque": torque}))))
+    return list(reversal_notes(design(variation={"torque": torque}).possible))
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,6 @@ from typer.testing import CliRunner
 from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import UsageError
-from siggen.gearbox.draw import draw_specimen
 from siggen.views.error_figure import error_figure
 from siggen.views.tooth_deviations import gear_charts
 
@@ -46,13 +45,13 @@ def test_a_row_per_tooth_and_a_picture(tmp_path: Path) -> None:
 def test_the_table_is_what_the_records_were_labelled_with(tmp_path: Path) -> None:
     run("--out", tmp_path / "e.parquet", "--specimen", 4, *CLASS_6)
     table = pyarrow.parquet.read_table(tmp_path / "e.parquet")
-    pinion, _ = gear_charts(draw_specimen(load_config("tests/configs/casing.yaml", [CLASS_6[1]]), 4))
+    pinion, _ = gear_charts(load_config("tests/configs/casing.yaml", [CLASS_6[1]]).gearbox(4))
     largest = 1e6 * pinion.made.found.largest["profile_m"]
     assert table["profile_um"].to_numpy()[:18].max() == pytest.approx(largest, rel=1e-12)
 
 
 def test_drawn_profiles_and_pitches_lie_within_the_band() -> None:
-    charts = gear_charts(draw_specimen(load_config("tests/configs/casing.yaml", [CLASS_6[1]]), 0))
+    charts = gear_charts(load_config("tests/configs/casing.yaml", [CLASS_6[1]]).gearbox(0))
     for chart, (pitch, profiles) in zip(charts, np.reshape(error_figure(charts).axes, (2, 2)), strict=True):
         used = 1e6 * chart.made.tolerance_share * chart.made.tolerances.profile_m
         heights = [np.ptp(line.get_ydata()) for line in profiles.get_lines()]

@@ -15,10 +15,9 @@ from typer.testing import CliRunner
 from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import UsageError
-from siggen.gearbox.draw import draw_specimen
 from siggen.views.flank_figure import MOST_FLANKS, flank_figure
 from siggen.views.flank_views import flank_views
-from tests.config.minimal import config
+from tests.config.minimal import design
 from tests.views.test_damage_outline import polygon_area
 
 runner = CliRunner()
@@ -57,7 +56,7 @@ def test_csv_holds_lists_as_text(tmp_path: Path) -> None:
 
 
 def test_damage_is_drawn_to_scale() -> None:
-    views = flank_views(draw_specimen(load_config("configs/paper_a.yaml"), 0), state="moderate")
+    views = flank_views(load_config("configs/paper_a.yaml").gearbox(0), state="moderate")
     figure = flank_figure(views)
     axis = figure.axes[0]
     assert axis.get_aspect() == 1.0
@@ -69,7 +68,7 @@ def test_damage_is_drawn_to_scale() -> None:
 
 
 def test_a_picture_with_many_flanks_says_what_it_leaves_out() -> None:
-    views = flank_views(draw_specimen(config(states__slight__damage__teeth=MOST_FLANKS + 2), 0))
+    views = flank_views(design(states__slight__damage__teeth=MOST_FLANKS + 2).gearbox(0))
     figure = flank_figure(views)
     assert f"{MOST_FLANKS} of {MOST_FLANKS + 2}" in figure.get_suptitle()
 

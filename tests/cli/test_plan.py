@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 from siggen.cli.app import app
 from siggen.cli.plan import plan_summary
 from siggen.config import yaml_text
+from siggen.gearbox.design import SetDesign
 from tests.config.minimal import config, minimal
 
 
@@ -43,10 +44,12 @@ def test_json_holds_what_the_configuration_describes(path):
 
 def test_records_of_states_and_splits_add_up_to_all():
     summary = plan_summary(
-        config(
-            specimens=47,
-            repeats=3,
-            operating_points=[{"speed_hz": [20, 35], "torque_nm": 60}] * 2,
+        SetDesign(
+            config(
+                specimens=47,
+                repeats=3,
+                operating_points=[{"speed_hz": [20, 35], "torque_nm": 60}] * 2,
+            )
         )
     )
     counts = [count for state in summary["states"] for count in state["records_of_split"].values()]
@@ -69,7 +72,7 @@ def test_the_table_shows_identity_splits_and_size(path):
 
 
 def test_errors_of_the_teeth_are_named_by_their_class(tmp_path):
-    assert plan_summary(config())["manufacture"] == "perfect gears"
+    assert plan_summary(SetDesign(config()))["manufacture"] == "perfect gears"
     override = ("--set", "manufacture={accuracy_class: 6, accuracy_class_driven: 7, draw: state}")
     text = run("plan", Path("tests/configs/casing.yaml"), *override)
     assert "ISO 1328-1 class 6, gear 7; share of its tolerances: [0.3, 0.5]" in text

@@ -36,7 +36,7 @@ NEVER_FOR_SCORES = {"paper_a.yaml", "paper_b.yaml"}
 @pytest.mark.parametrize("preset", [name for name in PRESETS if name not in NEVER_FOR_SCORES])
 def test_every_preset_for_scores_has_a_sham_unless_it_runs_to_failure(preset: str) -> None:
     config = siggen.load_config(ROOT / "configs" / preset)
-    assert any(state.sham for state in config.states) != bool(config.life)
+    assert any(state.sham for state in config.config.states) != config.lives
 
 
 def test_what_the_simulation_alone_knows_is_neither_condition_nor_measured() -> None:

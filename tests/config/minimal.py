@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from siggen.config import Config, parse
+from siggen.gearbox.design import SetDesign
 
 MINIMAL: dict[str, Any] = {
     "name": "minimal",
@@ -58,3 +59,8 @@ def config(**changes: Any) -> Config:
     parsed = parse(minimal(**changes))
     assert parsed.config is not None, [str(problem) for problem in parsed.problems]
     return parsed.config
+
+
+def design(**changes: Any) -> SetDesign:
+    """Return its design with dotted paths replaced."""
+    return SetDesign(config(**changes))

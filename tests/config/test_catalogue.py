@@ -18,7 +18,7 @@ ON_HOUSING = {"place": "lid"}
 def loaded(folder: Path, text: str, *overrides: str) -> Config:
     file = folder / "mine.yaml"
     file.write_text(f"extends: quickstart\nname: mine\n{text}")
-    return load_config(file, overrides)
+    return load_config(file, overrides).config
 
 
 @pytest.mark.parametrize("section", ["variation", "background"])

@@ -160,7 +160,7 @@ def test_a_spall_smaller_than_the_milder_one_is_no_growth(
         states = f"states:\n  others: null\n  healthy: {{}}\n  slight: {{damage: {milder}}}\n  severe: {severe}\n"
         file = tmp_path / "mine.yaml"
         file.write_text(f"extends: quickstart\nname: mine\n{states}")
-        return load_config(file)
+        return load_config(file).config
 
     with pytest.raises(
         ConfigError, match=rf"states\.severe\.damage\.{key}: received no spalls beyond .*slight.*\(line 7\)"

@@ -10,8 +10,8 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.config import read_yaml
 from siggen.config.key_lines import key_line
-from siggen.config.yaml_source import yaml_node
 from siggen.errors import ConfigError
+from siggen.keys.yaml_source import yaml_node
 
 CONFIGS = sorted((Path(__file__).resolve().parents[2] / "configs").glob("*.yaml"))
 BENCH = Path(__file__).resolve().parents[2] / "configs" / "bench.yaml"

@@ -11,7 +11,6 @@ from siggen.checks.loading import load_config
 from siggen.config import parse, yaml_text
 from siggen.errors import ConfigError
 from siggen.gearbox.configured import gearbox_config
-from siggen.gearbox.draw import draw_specimen
 from siggen.sets.drawn import set_columns
 from siggen.specimen.mesh_teeth import all_teeth
 from siggen.specimen.structure import structure
@@ -51,8 +50,8 @@ def test_gears_that_bear_each_others_usual_names_keep_them_in_columns_labels_and
     assert of["teeth", "gear"].name == "teeth_gear"
     assert of["teeth", "gear"].label == "teeth_pinion"  # which the driver of a mesh is inside
     assert of["shaft_hz", "pinion"].name == "pinion_shaft_hz"
-    assert config.states[1].damages[0].hit_gear == "gear"
-    assert structure(draw_specimen(config, 0)).coordinates[1:4] == ("x_gear", "y_gear", "theta_gear")
+    assert config.config.states[1].damages[0].hit_gear == "gear"
+    assert structure(config.gearbox(0)).coordinates[1:4] == ("x_gear", "y_gear", "theta_gear")
 
 
 def test_its_own_file_reads_the_same_and_never_says_pinion() -> None:
@@ -67,7 +66,7 @@ def test_states_change_shafts_by_their_place_in_the_machine() -> None:
     key = "machine.shafts.1.bearing_stiffness_x_n_per_m"
     state = {"name": "soft", "fault": "loose_bearing", "severity": "slight", "changes": {key: {"times": 0.5}}}
     config = load_config(mill(states=by_name([{"name": "healthy"}, state])))
-    assert [one.path for one in config.states[1].changes] == ["dynamics.pinion.bearing_stiffness_x_n_per_m"]
+    assert [one.path for one in config.config.states[1].changes] == ["dynamics.pinion.bearing_stiffness_x_n_per_m"]
     assert list(config.canonical()["states"]["soft"]["changes"]) == [key]
 
 
@@ -136,16 +135,16 @@ def test_a_machine_that_cannot_be_is_refused_at_the_users_line(mistake: str, tmp
 
 def test_an_idler_is_named_by_the_mesh_of_each_flank() -> None:
     config = load_config(idler(sensors={"out": {"kind": "encoder", "place": "b"}}))
-    assert [state.damages[0].gear for state in config.states[1:]] == ["first.b", "second.b"]
-    assert parse(config.canonical()).config == config
+    assert [state.damages[0].gear for state in config.config.states[1:]] == ["first.b", "second.b"]
+    assert parse(config.canonical()).config == config.config
     assert {"faulty_teeth_first_b", "faulty_teeth_second_b"} <= set(label_names(config))
-    drawn = draw_specimen(config, 0)
+    drawn = config.gearbox(0)
     assert drawn.meshes[1].pair.pinion == drawn.pair.gear
 
 
 def test_an_idler_whose_bore_is_drawn_has_one() -> None:
     bore = [10.0, 14.0]
-    drawn = draw_specimen(load_config(idler(machine=with_idler("gears", 1, bore_radius_mm=bore))), 3)
+    drawn = load_config(idler(machine=with_idler("gears", 1, bore_radius_mm=bore))).gearbox(3)
     assert drawn.meshes[1].pair.pinion.bore_radius_m == drawn.pair.gear.bore_radius_m
 
 
@@ -153,9 +152,9 @@ def test_an_idler_whose_bore_is_drawn_has_one() -> None:
 def test_either_of_any_mesh_is_one_of_its_gears_drawn_per_gearbox(word: str, gears: set[str]) -> None:
     damage = {**SPALL, "gear": word, "teeth": 1}
     config = load_config(mill(states={"healthy": {}, "severe": {"damage": damage}}))
-    drawn = [gearbox_config(config, number).states[1].damages[0].hit_gear for number in range(12)]
+    drawn = [gearbox_config(config.config, number).states[1].damages[0].hit_gear for number in range(12)]
     assert set(drawn) == gears
-    specimen, (front, behind) = draw_specimen(config, 0), (("ida", "otto"), ("eva", "karl"))
+    specimen, (front, behind) = config.gearbox(0), (("ida", "otto"), ("eva", "karl"))
     counts = [len(one.damage(1)) for one in all_teeth(specimen)]
     assert counts == [int(drawn[0] in front), int(drawn[0] in behind)]
 
@@ -168,7 +167,7 @@ def test_a_spalled_bearing_is_called_by_its_shaft_and_is_one_of_the_first_two(pl
 
     config = load_config(made(place))
     assert config.canonical()["states"]["severe"]["damage"]["bearing"] == place
-    (part,) = next(iter(all_teeth(draw_specimen(config, 0)))).damage(1)
+    (part,) = next(iter(all_teeth(config.gearbox(0)))).damage(1)
     assert part.table_row()["bearing"] == drawn
     (problem,) = parse(made("output_bearing")).problems
     assert problem.path == "states.severe.damage.bearing"
@@ -228,9 +227,9 @@ def test_a_loop_whose_ratios_agree_turns_but_has_two_ways_for_power() -> None:
 def test_a_machine_takes_the_place_of_gears_and_shafts_that_its_file_extends() -> None:
     own = {"machine": mill()["machine"]} | {key: {"others": None, **mill()[key]} for key in ("sensors", "states")}
     found = load_config({"extends": "quickstart", **own, "housing": {"kind": "rigid"}, "background": None})
-    assert found.gears.pinion.teeth == 18
-    assert found.dynamics.shafts is None
-    assert found.dynamics.pinion.mass_kg is None
+    assert found.config.gears.pinion.teeth == 18
+    assert found.config.dynamics.shafts is None
+    assert found.config.dynamics.pinion.mass_kg is None
     with pytest.raises(ConfigError) as refused:
         load_config({"extends": "quickstart", **own, "gears": {"module_mm": 2.0}, "dynamics": {"shafts": {}}})
     told = [problem.path for problem in refused.value.problems]

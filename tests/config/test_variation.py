@@ -7,7 +7,7 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.config import parse
 from siggen.errors import ConfigError
-from tests.config.minimal import config, minimal
+from tests.config.minimal import config, design, minimal
 from tests.simulated import label_names
 
 RANDOM = {"speed": {"random_rms": 0.003}}
@@ -30,10 +30,10 @@ def test_an_empty_section_is_none_at_all():
 
 
 def test_labels_of_the_variation_are_there_with_it_and_only_then():
-    added = set(label_names(config(variation=RANDOM))) - set(label_names(config()))
+    added = set(label_names(design(variation=RANDOM))) - set(label_names(design()))
     assert added == {"speed_std_hz", "mean_torque_nm", "torque_std_nm"}
-    assert set(label_names(config())) <= set(label_names(config(variation=RANDOM)))
-    assert label_names(config(dynamics__unbalance={"grade_mm_s": 6.3})) == label_names(config())
+    assert set(label_names(design())) <= set(label_names(design(variation=RANDOM)))
+    assert label_names(design(dynamics__unbalance={"grade_mm_s": 6.3})) == label_names(design())
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ def test_a_run_down_that_the_load_would_drive_is_refused_by_name():
     assert "raise end_ratio, duration_s or the torque" in said
     # Light torque that rattles is allowed, and so is the same torque without run-down.
     light = minimal(variation={"torque": {"load_once": 2.0}}, operating_points__0__torque_nm=0.1)
-    assert load_config(light).variation.active
+    assert load_config(light).config.variation.active
 
 
 def test_a_motor_that_its_slip_would_stall_is_refused_by_name():

@@ -19,7 +19,7 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.columns.record import Column, RecordFailure, SimulatedRecord
-from siggen.config import Config, parse
+from siggen.gearbox.design import SetDesign, design_of
 from siggen.planning import plan
 from siggen.planning.plan import PlannedRecord, planned_record
 from siggen.sets import physics
@@ -33,7 +33,7 @@ STEP_M_S2 = 2.0**-6
 STEPPED = {"integration_error": 2e-4, "integration_error_of": "samples"}
 
 
-def fake_config(**changes: Any) -> Config:
+def fake_config(**changes: Any) -> SetDesign:
     """Two channels of 512 samples, three states, two operating points; 6 records per specimen."""
     pit = {"semi_axis_face_mm": 0.3, "semi_axis_profile_mm": 0.2, "depth_mm": 0.4}
     mapping = {
@@ -60,15 +60,13 @@ def fake_config(**changes: Any) -> Config:
         "sensors": {"bearing": {"axes": ["vertical", "horizontal"]}},
         **changes,
     }
-    parsed = parse(mapping)
-    assert not parsed.problems, parsed.problems
-    return parsed.config
+    return design_of(mapping, "fake")
 
 
-def fake_record(config: Config, planned: PlannedRecord) -> SimulatedRecord:
+def fake_record(config: SetDesign, planned: PlannedRecord) -> SimulatedRecord:
     """Noise on the converter's grid, and labels that follow from the state."""
     rng = np.random.default_rng([config.seed, planned.record_id])
-    state = config.states[planned.state_id]
+    state = config.config.states[planned.state_id]
     pits = 0 if state.damage is None else state.damage.count
     labels: dict[str, object] = {
         "state": state.name,
@@ -97,7 +95,7 @@ def fake_record(config: Config, planned: PlannedRecord) -> SimulatedRecord:
         "mesh_hz": 540.0,
         "mesh_stiffness_loss_as_simulated": 0.008 * pits,
         "start_angle_rad": float(rng.random()),
-        **(STEPPED if config.dynamics.method == "exponential" else {}),
+        **(STEPPED if config.config.dynamics.method == "exponential" else {}),
     }
     signals = {}
     for name in config.channels:
@@ -115,14 +113,14 @@ QUANTITIES = (
 )
 
 
-def quantities(config: Config) -> tuple[Column, ...]:
+def quantities(config: SetDesign) -> tuple[Column, ...]:
     """Stand in for `siggen.sets.drawn.stored_quantities`."""
     return QUANTITIES
 
 
-def fake_internals(config: Config, planned: PlannedRecord) -> dict[str, np.ndarray] | None:
+def fake_internals(config: SetDesign, planned: PlannedRecord) -> dict[str, np.ndarray] | None:
     """Return a force that tells the record; odd specimens have no second pair, others one with a film half the time."""
-    if config.internals is None:
+    if config.config.internals is None:
         return None
     force = np.linspace(0.0, 1.0, config.samples) + planned.record_id
     if planned.specimen_id % 2:
@@ -131,12 +129,12 @@ def fake_internals(config: Config, planned: PlannedRecord) -> dict[str, np.ndarr
     return {"mesh_force_n": force, "pair_1_force_n": -force, "pair_1_film_ratio": film}
 
 
-def simulate(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
+def simulate(config: SetDesign, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Stand in for `siggen.sets.drawn.simulated`."""
     return [fake_record(config, planned_record(config, i)) for i in record_ids]
 
 
-def simulate_with_thicker_films(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
+def simulate_with_thicker_films(config: SetDesign, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Change the last film of every record by 1 %."""
     results = simulate(config, record_ids)
     for result in results:
@@ -145,7 +143,7 @@ def simulate_with_thicker_films(config: Config, record_ids: Sequence[int]) -> li
     return results
 
 
-def simulate_with_longer_contact(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
+def simulate_with_longer_contact(config: SetDesign, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Give every film one sample more."""
     results = simulate(config, record_ids)
     for result in results:
@@ -154,13 +152,13 @@ def simulate_with_longer_contact(config: Config, record_ids: Sequence[int]) -> l
     return results
 
 
-def simulate_slowly(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
+def simulate_slowly(config: SetDesign, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Give a test the time to kill something."""
     time.sleep(0.05 * len(record_ids))
     return simulate(config, record_ids)
 
 
-def simulate_with_failures(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
+def simulate_with_failures(config: SetDesign, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Fail at records 3 and 8, and give one signal a NaN (record 10)."""
     results: list[SimulatedRecord | RecordFailure] = []
     for result in simulate(config, record_ids):
@@ -173,19 +171,19 @@ def simulate_with_failures(config: Config, record_ids: Sequence[int]) -> list[Si
     return results
 
 
-def simulate_none(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
+def simulate_none(config: SetDesign, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Fail at every record."""
     return [RecordFailure(i, "diverged", "always") for i in record_ids]
 
 
-def simulate_with_a_bug(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
+def simulate_with_a_bug(config: SetDesign, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Raise at record 8, as only a fault of the program does."""
     if 8 in record_ids:
         raise ZeroDivisionError("a bug")
     return simulate(config, record_ids)
 
 
-def simulate_and_die_once(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
+def simulate_and_die_once(config: SetDesign, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Kill the worker at record 8, the first time only."""
     marker = Path(os.environ["SIGGEN_TEST_MARKER"])
     if 8 in record_ids and not marker.exists():
@@ -194,21 +192,21 @@ def simulate_and_die_once(config: Config, record_ids: Sequence[int]) -> list[Sim
     return simulate(config, record_ids)
 
 
-def simulate_and_die(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
+def simulate_and_die(config: SetDesign, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Kill the worker at record 8, every time."""
     if 8 in record_ids:
         os.kill(os.getpid(), signal.SIGKILL)
     return simulate(config, record_ids)
 
 
-def damage_rows(config: Config, record_ids: Sequence[int]) -> list[dict[str, object]]:
+def damage_rows(config: SetDesign, record_ids: Sequence[int]) -> list[dict[str, object]]:
     """Stand in for `siggen.sets.drawn.damage_rows`: one ellipse per pit."""
     return [row for record_id in record_ids for row in _pits(config, record_id)]
 
 
-def _pits(config: Config, record_id: int) -> list[dict[str, object]]:
+def _pits(config: SetDesign, record_id: int) -> list[dict[str, object]]:
     planned = planned_record(config, record_id)
-    damage = config.states[planned.state_id].damage
+    damage = config.config.states[planned.state_id].damage
     ellipse = {
         "gear": "pinion",
         "tooth": planned.specimen_id % 18,
@@ -236,7 +234,7 @@ def fake_physics(simulation: Any = simulate) -> Iterator[None]:
 
 def write_fake_set(
     path: Path | str,
-    config: Config | None = None,
+    config: SetDesign | None = None,
     *,
     workers: int = 0,
     simulation: Any = simulate,

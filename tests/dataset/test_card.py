@@ -8,9 +8,10 @@ import pytest
 import yaml
 
 from siggen.checks.loading import load_config
-from siggen.config import Config, Manufacture
+from siggen.config import Manufacture
 from siggen.dataset.card import _limits
-from siggen.dataset.card_making import background_text, damage_text, drive_text, making
+from siggen.gearbox.description import background_text, damage_text, drive_text, making
+from siggen.gearbox.design import SetDesign
 from siggen.keys.distributions import Choice
 from tests.dataset.fake_set import fake_config, simulate_with_failures, write_fake_set
 
@@ -62,7 +63,7 @@ def test_the_card_says_that_error_free_gears_separate_trivially(folder: Path) ->
 
 def test_the_card_says_which_class_the_gears_were_made_to_and_who_shares_them() -> None:
     classes = Choice(values=(5.0, 6.0, 7.0))
-    config = fake_config(specimens=1).model_copy(update={"manufacture": Manufacture(accuracy_class=classes)})
+    config = fake_config(specimens=1).with_sections(manufacture=Manufacture(accuracy_class=classes))
     text = _limits(config)
     assert "no manufacturing errors" not in text
     assert "class 5, 6 or 7 of ISO 1328-1\n  (share used: [0.3, 0.5])" in text
@@ -86,13 +87,13 @@ def test_the_loading_example_of_the_card_runs(folder: Path, monkeypatch: pytest.
     assert scope["record"]["record_id"] == 0
 
 
-def shipped(name: str, *overrides: str) -> Config:
+def shipped(name: str, *overrides: str) -> SetDesign:
     return load_config(name, overrides)
 
 
 def test_the_card_says_how_damage_acts_in_this_very_set() -> None:
     stiffness, geometry, both = (
-        damage_text(shipped(name)) for name in ("tests/configs/linear_pits.yaml", "quickstart", "paper_b")
+        damage_text(shipped(name).config) for name in ("tests/configs/linear_pits.yaml", "quickstart", "paper_b")
     )
     assert "remove material from the tooth's sections" in stiffness
     assert "sinks" not in stiffness
@@ -101,7 +102,7 @@ def test_the_card_says_how_damage_acts_in_this_very_set() -> None:
     assert "remove material" not in geometry
     assert "the mating flank sinks" in both
     assert "weakens them" in both
-    assert "every state is healthy" in damage_text(shipped("quickstart", "states={healthy: {}}"))
+    assert "every state is healthy" in damage_text(shipped("quickstart", "states={healthy: {}}").config)
 
 
 def test_the_card_says_what_rubs_what_varies_and_what_makes_noise() -> None:
@@ -116,12 +117,12 @@ def test_the_card_says_what_rubs_what_varies_and_what_makes_noise() -> None:
     assert "through a box of plates on bolts" in rich
     assert "box of plates" not in plain
     torque = shipped("tests/configs/linear_pits.yaml", "variation.torque.random_rms=0.01")
-    assert drive_text(torque) == "Within a record torque varies (`variation`); the speed is constant."
+    assert drive_text(torque.config) == "Within a record torque varies (`variation`); the speed is constant."
     assert "Shafts bend" not in plain
     assert "healthy machine adds" not in plain
     across = "The contact is solved across the face and depends on the load (`dynamics.mesh.law: pairs`). Shafts bend"
     assert across in rich
-    one = background_text(shipped("quickstart", "background={machines: {}}"))
+    one = background_text(shipped("quickstart", "background={machines: {}}").config)
     assert one == "A healthy machine adds noise of motor and load (`background`); the levels belong to the gearbox. "
     assert "rubbing of rough flanks, " in rich
     assert longest <= 118

@@ -6,21 +6,21 @@ from pathlib import Path
 
 import pytest
 
-from siggen.config import parse, parse_yaml
-from siggen.dataset.folder import config_bytes, is_finished
+from siggen.dataset.folder import is_finished
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError
 from siggen.file_writing import LEFTOVER_SUFFIX
+from siggen.gearbox.design import stored_design
 from tests.dataset.fake_set import copy_fake_set, fake_config, file_bytes, write_fake_set
 
 CONFIG = fake_config()
 
 
 def test_config_yaml_is_the_same_configuration_again() -> None:
-    parsed = parse(parse_yaml(config_bytes(CONFIG).decode()))
-    assert parsed.config == CONFIG
-    assert parsed.config.identity == CONFIG.identity
-    assert config_bytes(parsed.config) == config_bytes(CONFIG)
+    stored = stored_design(CONFIG.text.encode(), "config.yaml")
+    assert stored == CONFIG
+    assert stored.identity == CONFIG.identity
+    assert stored.text == CONFIG.text
 
 
 def test_new_empty_and_begun_folders_are_not_finished(tmp_path: Path) -> None:
@@ -28,7 +28,7 @@ def test_new_empty_and_begun_folders_are_not_finished(tmp_path: Path) -> None:
     assert not is_finished(LocalFolder(tmp_path), CONFIG)
     (tmp_path / f".config.yaml.0123abcd{LEFTOVER_SUFFIX}").write_bytes(b"half")
     assert not is_finished(LocalFolder(tmp_path), CONFIG)
-    (tmp_path / "config.yaml").write_bytes(config_bytes(CONFIG))
+    (tmp_path / "config.yaml").write_bytes(CONFIG.text.encode())
     assert not is_finished(LocalFolder(tmp_path), CONFIG)
 
 

@@ -23,8 +23,8 @@ import yaml
 import siggen
 from benchmarks.row import Row, duration_text
 from benchmarks.shipped import QUICKSTART, shipped
-from siggen.config import parse, parse_yaml
 from siggen.errors import EXIT_MISMATCH, EXIT_USAGE, SiggenError, VerificationError
+from siggen.gearbox.design import stored_design
 from tests.faults.changed_sets import SECRET, change
 
 COUNT, QUICK_COUNT = 2_000, 40
@@ -93,7 +93,7 @@ def readers(whole: Path) -> dict[str, Reader]:
 
     `generate` goes on in the stranger's folder with one's own configuration, that of the unchanged set.
     """
-    own = parse(parse_yaml((whole / "config.yaml").read_text())).config
+    own = stored_design((whole / "config.yaml").read_bytes(), "config.yaml")
     return {
         "open": _open,
         "verify": _verify,

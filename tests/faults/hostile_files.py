@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchmarks.row import Row, duration_text
-from siggen.config.yaml_source import LARGEST_BYTES
+from siggen.keys.yaml_source import LARGEST_BYTES
 
 PRESET = Path(__file__).resolve().parents[2] / "configs" / "quickstart.yaml"
 COMMAND_S = 2.0

@@ -12,10 +12,10 @@ from scipy.signal import hilbert
 
 import siggen.faults.bearing_spall as bearing_spall
 from siggen.checks.physical_problems import physical_problems
-from siggen.config import Config, parse
+from siggen.config import parse
 from siggen.dynamics.bearings.bearing_spall import RollingSpall
 from siggen.dynamics.drive.drive import Drive
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.planning.plan import planned_record
 from siggen.record.simulation import record_response
@@ -34,7 +34,7 @@ SLIP = 0.01, 0.02
 SPALL: dict[str, Any] = {"kind": "bearing_spall", "element": "outer", "length_mm": 2.0}
 
 
-def with_states(*damage: dict[str, Any] | None, **changes: Any) -> Config:
+def with_states(*damage: dict[str, Any] | None, **changes: Any) -> SetDesign:
     """Return the smallest configuration with a state for each damage behind the healthy one; None for none."""
     states = [{"name": "first"}]
     for number, one in enumerate(damage):
@@ -42,7 +42,9 @@ def with_states(*damage: dict[str, Any] | None, **changes: Any) -> Config:
         own = {} if one is None else {"damage": {k: v for k, v in one.items() if k != "grows"}}
         grown = {"grows": f"state-{number - 1}"} if one is not None and one.get("grows") else {}
         states.append({"name": f"state-{number}", **severity, **grown, **own})
-    return config(states=by_name(states), **{"dynamics__model": "8dof", "fs_hz": 25600.0, "duration_s": 1.0, **changes})
+    return SetDesign(
+        config(states=by_name(states), **{"dynamics__model": "8dof", "fs_hz": 25600.0, "duration_s": 1.0, **changes})
+    )
 
 
 @cache
@@ -104,7 +106,7 @@ def test_shaft_and_housing_feel_equal_and_opposite_forces(model: str, bearing: s
     housing = {"housing": {"kind": "rigid"}} if model == "casing" else {}
     made = with_states({**SPALL, "bearing": bearing}, dynamics__model=model, **housing)
     (source,) = sources_of(made, 1)
-    names = structure(draw_specimen(made, 0)).coordinates
+    names = structure(made.gearbox(0)).coordinates
     for axis in "xy":
         on_shafts = source.vectors[:, [names.index(f"{axis}_{gear}") for gear in ("pinion", "gear")]].sum(axis=1)
         on_seats = -np.array([source.seat_forces[f"{bearing}/{one}"] for one in ("horizontal", "vertical")]).sum(axis=1)
@@ -120,7 +122,7 @@ def test_the_mean_force_of_the_bearing_is_the_torques_whether_a_ball_sinks_or_no
     means = []
     for spall in (None, {**SPALL, "length_mm": 6.0}):
         made = with_states(spall, duration_s=2.0)
-        specimen, record = draw_specimen(made, 0), planned_record(made, 1)
+        specimen, record = made.gearbox(0), planned_record(made, 1)
         response, point = record_response(specimen, specimen_state(specimen, 1), record, internals=True)
         force = np.array([response.bearing_force_n[f"pinion_bearing/{axis}"] for axis in ("horizontal", "vertical")])
         means.append(force.mean(axis=1))
@@ -133,9 +135,9 @@ def test_the_mean_force_of_the_bearing_is_the_torques_whether_a_ball_sinks_or_no
     np.testing.assert_allclose(means[0], expected, atol=0.01 * np.hypot(*expected))  # friction of the teeth
 
 
-def sources_of(made: Config, record_id: int) -> tuple[Any, ...]:
+def sources_of(made: SetDesign, record_id: int) -> tuple[Any, ...]:
     record = planned_record(made, record_id)
-    specimen = draw_specimen(made, record.specimen_id)
+    specimen = made.gearbox(record.specimen_id)
     parts = specimen_state(specimen, record.state_id).parts
     return spall_sources(specimen, structure(specimen), record, record_rotation(specimen, record), parts)
 
@@ -166,7 +168,7 @@ def test_steps_are_chosen_on_a_stretch_that_no_passage_of_the_zone_can_miss(elem
 def test_half_of_the_tooth_force_loads_the_bearing_along_the_line_of_action() -> None:
     made = with_states(SPALL, {**SPALL, "bearing": "gear_bearing"})
     (pinion,), (gear,) = sources_of(made, 1), sources_of(made, 2)
-    pair = draw_specimen(made, 0).pair
+    pair = made.gearbox(0).pair
     force = 60.0 / (0.5 * 3e-3 * 18 * math.cos(math.radians(20.0)))
     for source in (pinion, gear):
         bearing = source.spall.bearing
@@ -187,7 +189,7 @@ def test_a_grown_spall_takes_the_place_of_the_milder_one() -> None:
         {**SPALL, "element": "inner", "length_mm": longer, "grows": True},
         {**SPALL, "grows": True},
     )
-    slight, severe, both = (specimen_state(draw_specimen(made, 0), n).parts for n in (1, 2, 3))
+    slight, severe, both = (specimen_state(made.gearbox(0), n).parts for n in (1, 2, 3))
     assert [len(parts) for parts in (slight, severe, both)] == [1, 1, 2]
     (before,), (after,) = slight, severe
     assert isinstance(before, RollingSpall)

@@ -9,10 +9,8 @@ import pytest
 
 from siggen.checks.quantity_names import available_quantities
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.gearbox.draw import draw_specimen
-from siggen.gearbox.possible import PossibleGearbox
+from siggen.gearbox.design import SetDesign
 from siggen.gears.damage.chip import WholeChip
 from siggen.record.specimen_state import specimen_state
 from tests.faults.test_damage import config_with, damage_of
@@ -22,14 +20,14 @@ CHIP: dict[str, Any] = {"kind": "chip", "height_mm": 1.5}
 BROKEN: dict[str, Any] = {"kind": "chip", "height_mm": "whole"}
 
 
-def quick(*damages: dict[str, Any], torque_nm: float = 60.0, speed_hz: float = 30.0) -> Config:
+def quick(*damages: dict[str, Any], torque_nm: float = 60.0, speed_hz: float = 30.0) -> SetDesign:
     config = config_with(*damages)
-    (point,) = config.operating_points
+    (point,) = config.config.operating_points
     points = (point.model_copy(update={"torque_nm": torque_nm, "speed_hz": speed_hz}),)
-    return config.model_copy(update={"fs_hz": 27000.0, "duration_s": 0.3, "operating_points": points})
+    return config.with_sections(fs_hz=27000.0, duration_s=0.3, operating_points=points)
 
 
-def records(config: Config, ids: list[int]) -> list[SimulatedRecord]:
+def records(config: SetDesign, ids: list[int]) -> list[SimulatedRecord]:
     found = simulate(config, ids)
     assert all(isinstance(one, SimulatedRecord) for one in found), found
     return [one for one in found if isinstance(one, SimulatedRecord)]
@@ -52,8 +50,8 @@ def test_a_missing_tooth_is_simulated_and_strikes_once_per_turn() -> None:
 def test_a_small_chip_shows_where_its_pair_leaves_and_no_teeth_part() -> None:
     """Against its sham, which starts at the same angle and differs in nothing else."""
     config = quick(CHIP)
-    sham = (config.states[0], config.states[1].model_copy(update={"acts": False}))
-    (whole,), (chipped,) = records(config.model_copy(update={"states": sham}), [1]), records(config, [1])
+    sham = (config.config.states[0], config.config.states[1].model_copy(update={"acts": False}))
+    (whole,), (chipped,) = records(config.with_sections(states=sham), [1]), records(config, [1])
     assert chipped.labels["fault"] == "chip"
     assert chipped.labels["contact_loss_share"] == 0.0
     first, second = (one.channels["bearing_vertical"].astype(float) for one in (whole, chipped))
@@ -62,7 +60,7 @@ def test_a_small_chip_shows_where_its_pair_leaves_and_no_teeth_part() -> None:
 
 
 def test_quantities_of_pairs_are_as_many_as_a_missing_tooth_has_in_reach() -> None:
-    names = [available_quantities(PossibleGearbox(config_with(*damages))) for damages in ((CHIP,), (BROKEN,))]
+    names = [available_quantities(config_with(*damages).possible) for damages in ((CHIP,), (BROKEN,))]
     pairs = [len({name.split("_")[1] for name in found if name.startswith("pair_")}) for found in names]
     assert pairs == [2, 3]
 
@@ -139,7 +137,7 @@ def test_a_missing_tooth_is_missing_under_either_torque() -> None:
 def measured(damage: dict[str, Any], state: int = 1) -> tuple[dict[str, Any], float]:
     """Return the labels of a damage alone, and the loss of stiffness at 60 N m."""
     config = quick({**damage, "teeth": [4]})
-    found = specimen_state(draw_specimen(config, 0), state)
+    found = specimen_state(config.gearbox(0), state)
     return found.labels, found.static.largest_loss(60.0)
 
 
@@ -147,7 +145,7 @@ def test_labels_of_a_chip_over_the_face_are_its_area_and_its_stiffness() -> None
     """Of the involute above a radius R the area is b (R_a² - R²)/(2 R_b); of nearly all of the face nearly as much."""
     deep = {"kind": "chip", "height_mm": 3.0}
     (whole, lost), (_, nearly), (_, sound) = measured(deep), measured({**deep, "face_share": 0.999}), measured(deep, 0)
-    pair = draw_specimen(quick(deep), 0).pair
+    pair = quick(deep).gearbox(0).pair
     tip = pair.pinion.tip_radius_m
     area = pair.face_width_m * (tip**2 - (tip - 3e-3) ** 2) / (2.0 * pair.pinion.base_radius_m)
     assert whole["damaged_area_mm2"] == pytest.approx(1e6 * area, rel=1e-6)
@@ -163,7 +161,7 @@ def test_labels_of_a_chip_over_the_face_are_its_area_and_its_stiffness() -> None
 def test_what_is_gone_on_both_flanks_is_lost_under_either_torque(damages: tuple[dict[str, Any], ...]) -> None:
     """Perfect gears are their own mirror image, in which the teeth count the other way round."""
     config = quick(*damages)
-    static = specimen_state(draw_specimen(config, 0), 1).static
+    static = specimen_state(config.gearbox(0), 1).static
     assert static.largest_loss(-60.0) == pytest.approx(static.largest_loss(60.0), rel=1e-9)
     assert static.largest_loss(60.0) > 0.1
 
@@ -172,10 +170,10 @@ def test_a_chip_beside_pits_has_lost_its_tip_alone_under_a_torque_below_0() -> N
     chip = {"kind": "chip", "height_mm": 0.3, "teeth": [4]}
     wide = {"gear": "pinion", "tooth": 9, "height_mm": 3.0, "face_mm": 10.0, "semi_axis_face_mm": 8.0}
     pits = {"kind": "list", "pits": [{**wide, "semi_axis_profile_mm": 0.5, "depth_mm": 0.2}]}
-    alone, (_, state) = quick(chip), quick(pits).states
-    both = alone.states[1].model_copy(update={"damage": (*alone.states[1].damages, *state.damages)})
-    grown = alone.model_copy(update={"states": (alone.states[0], both)})
-    tip, more = (specimen_state(draw_specimen(one, 0), 1).static for one in (alone, grown))
+    alone, (_, state) = quick(chip), quick(pits).config.states
+    both = alone.config.states[1].model_copy(update={"damage": (*alone.config.states[1].damages, *state.damages)})
+    grown = alone.with_sections(states=(alone.config.states[0], both))
+    tip, more = (specimen_state(one.gearbox(0), 1).static for one in (alone, grown))
     assert more.largest_loss(-60.0) == pytest.approx(tip.largest_loss(-60.0), rel=1e-12)
     assert tip.largest_loss(-60.0) == pytest.approx(tip.largest_loss(60.0), rel=1e-9)
     assert more.largest_loss(60.0) > tip.largest_loss(60.0)

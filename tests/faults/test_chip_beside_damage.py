@@ -6,7 +6,6 @@ from typing import Any
 
 import pytest
 
-from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.chip import WholeChip
 from siggen.gears.damage.flank_loss import with_outlines
 from siggen.gears.damage.outlines import Polygon
@@ -25,7 +24,7 @@ AXES = {key: value for key, value in PIT.items() if key != "depth_mm"} | {"depth
 
 
 def tip_mm() -> float:
-    gear = draw_specimen(config_with(CHIP), 0).pair.pinion
+    gear = config_with(CHIP).gearbox(0).pair.pinion
     return 1e3 * float(gear.height_m(gear.tip_roll_rad))
 
 

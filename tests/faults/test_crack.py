@@ -8,7 +8,6 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
-from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.crack import RootCrack
 from siggen.gears.geometry.root_chord import root_chord
 from tests.faults.test_damage import config_with, damage_of
@@ -23,7 +22,7 @@ def cracked(**keys):
 
 def test_its_depth_is_a_share_of_the_chord_of_the_root() -> None:
     config = config_with(cracked(depth_share=0.25))
-    chord_m = root_chord(draw_specimen(config, 0).pair.pinion).length_m
+    chord_m = root_chord(config.gearbox(0).pair.pinion).length_m
     (one,) = damage_of(config, 1)
     assert isinstance(one, RootCrack)
     assert (degrees(one.angle_rad), one.run_m) == (pytest.approx(45.0), inf)

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.config import Config
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.tooth_damage import Damage
@@ -26,7 +25,7 @@ DRAWN_PIT = {
 }
 
 
-def config_with(*damages: Mapping[str, Any], seed: int = 5, law: str = "pairs") -> Config:
+def config_with(*damages: Mapping[str, Any], seed: int = 5, law: str = "pairs") -> SetDesign:
     """Return a configuration whose states have these damages, each grown from the one before."""
     chain = (("slight", None), ("moderate", "slight"), ("severe", "moderate"))
     grown = ({"name": n, "grows": m, "damage": dict(d)} for (n, m), d in zip(chain, damages, strict=False))
@@ -50,8 +49,8 @@ def config_with(*damages: Mapping[str, Any], seed: int = 5, law: str = "pairs") 
     )
 
 
-def damage_of(config: Config, state_id: int, specimen_id: int = 0) -> Damage:
-    return all_teeth(draw_specimen(config, specimen_id))[0].damage(state_id)
+def damage_of(config: SetDesign, state_id: int, specimen_id: int = 0) -> Damage:
+    return all_teeth(config.gearbox(specimen_id))[0].damage(state_id)
 
 
 def test_healthy_state_has_no_damage() -> None:
@@ -100,7 +99,7 @@ def test_the_damaged_tooth_differs_between_specimens_and_stays_in_all_states() -
 
 def test_drawn_centres_lie_on_the_flank_however_wide_the_scatter() -> None:
     config = config_with({"kind": "clustered", "count": 200, "spread_profile_mm": 3.0, **PIT})
-    pair = draw_specimen(config, 0).pair
+    pair = config.gearbox(0).pair
     low, high = flank_heights(pair.pinion)
     damage = damage_of(config, 1)
     assert all(low <= p.height_m <= high and 0 <= p.face_m <= pair.face_width_m for p in damage)
@@ -115,7 +114,7 @@ def test_listed_pits_appear_as_they_are_listed() -> None:
     damage = damage_of(config, 1)
     assert [(p.gear, p.tooth) for p in damage] == [("pinion", 3), ("gear", 40)]
     assert [p.height_m for p in damage] == pytest.approx([1.5e-3, 2.5e-3], rel=1e-15)
-    assert not damage_problems(draw_specimen(config, 0).pair, damage)
+    assert not damage_problems(config.gearbox(0).pair, damage)
 
 
 def test_growing_damage_stays_where_it_began_when_its_place_is_drawn() -> None:

@@ -12,7 +12,6 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from siggen.errors import ConfigError
-from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.heights import clipped_arc_m
 from siggen.gears.damage.irregular import IrregularSpall
 from tests.faults.test_damage import PIT, config_with, damage_of
@@ -104,7 +103,7 @@ def test_skews_are_millimetres_of_arc_over_ten_of_face() -> None:
     damage = {**SPALL, **STRAIGHT, "face_share": 1.0, "skew_mm_per_10mm": 0.2}
     config = config_with(damage)
     (one,) = damage_of(config, 1)
-    pair = draw_specimen(config, 0).pair
+    pair = config.gearbox(0).pair
     first, last = one.stations_m[0], one.stations_m[-1]
     assert clipped_arc_m(pair.pinion, (first[1], last[1])) == pytest.approx(0.4e-3, rel=1e-9)
     # Edges of one skew stay as far apart as they are in the middle.
@@ -115,7 +114,7 @@ def test_it_takes_the_place_of_the_milder_one_and_leaves_pits_beside_it() -> Non
     cluster = {"kind": "clustered", "count": 4, "spread_profile_mm": 0.5, **PIT}
     config = config_with(cluster, *GROWN[1:])
     assert [one.kind for one in damage_of(config, 3)].count("spall") == 1
-    assert [state.fault for state in config.states] == ["healthy", "pitting", "spalling", "spalling"]
+    assert [state.fault for state in config.config.states] == ["healthy", "pitting", "spalling", "spalling"]
 
 
 def test_rows_hold_the_outline_the_edges_and_the_depth_of_every_strip() -> None:
@@ -164,7 +163,7 @@ def test_impossible_spalls_are_refused_by_key_value_and_range(changes: dict[str,
 
 def test_a_depth_that_follows_from_the_lengths_is_blamed_on_them() -> None:
     config = config_with({**SPALL, **STRAIGHT, "face_share": 1.0})
-    damage, pair = config.states[1].damage, draw_specimen(config, 0).pair
+    damage, pair = config.config.states[1].damage, config.gearbox(0).pair
     assert damage is not None
     (problem,) = damage.place_problems(replace(pair, face_width_m=20.0))
     assert problem.path == "profile_length_mm"

@@ -9,7 +9,6 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
-from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.tooth_damage import on_teeth
 from siggen.gears.stiffness.sections import union_area_m2
 from siggen.specimen.mesh_teeth import all_teeth
@@ -27,12 +26,12 @@ def listed(**changes: Any) -> dict[str, Any]:
 
 def test_its_area_is_that_of_the_edges_that_are_written() -> None:
     config = load_config(listed())
-    pair = draw_specimen(config, 0).pair
-    damage = on_teeth(all_teeth(draw_specimen(config, 0))[0].damage(1))
+    pair = config.gearbox(0).pair
+    damage = on_teeth(all_teeth(config.gearbox(0))[0].damage(1))
     assert [(one.gear, one.tooth, one.depth_m) for one in damage] == [("pinion", 3, 1e-4)]
     # edges are straight in height, given as arcs here: 1 % between stations of 2 and 3 mm
     assert union_area_m2(pair.pinion, damage, pair.face_width_m) == pytest.approx(2.5e-6, rel=0.01)
-    assert config.states[1].fault == "spalling"
+    assert config.config.states[1].fault == "spalling"
 
 
 @pytest.mark.parametrize(

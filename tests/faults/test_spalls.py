@@ -10,7 +10,6 @@ import pytest
 
 from siggen.errors import ConfigError
 from siggen.faults.flank_place import axial_heights_m
-from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.heights import profile_arc_m
 from siggen.gears.stiffness.sections import contact_length_loss
@@ -24,10 +23,10 @@ DRAWN = [0.5, 1.5]
 def test_a_spall_has_its_length_on_the_flank_about_the_pitch_point() -> None:
     config = config_with(BOX)
     (spall,) = damage_of(config, 1)
-    pair = draw_specimen(config, 0).pair
+    pair = config.gearbox(0).pair
     assert profile_arc_m(pair.pinion, spall.outline) == pytest.approx(1e-3, rel=1e-9)
     assert spall.outline.face_range_m == pytest.approx((7e-3, 13e-3), rel=1e-12)
-    assert config.states[1].fault == "spalling"
+    assert config.config.states[1].fault == "spalling"
     assert not damage_problems(pair, (spall,))
 
 
@@ -45,7 +44,7 @@ def test_teeth_in_stages_have_the_same_spall_smaller_and_grow_into_the_full_one(
 
 def test_a_flank_goes_on_below_the_base_circle_along_its_tangent() -> None:
     """The involute leaves the base circle radially, so heights above and below grow by the cosine of its half angle."""
-    gear = draw_specimen(config_with(BOX), 0).pair.pinion
+    gear = config_with(BOX).gearbox(0).pair.pinion
     step = 1e-11  # the involute turns by 3e-5 on the way
     above, below = axial_heights_m(gear, np.array([step, -step]), "arc") / np.array([step, -step])
     assert below == pytest.approx(above, rel=1e-4)

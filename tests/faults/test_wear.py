@@ -10,7 +10,6 @@ import pytest
 from diagnostics.indicators.record import record_values
 from siggen.columns.record import SimulatedRecord
 from siggen.errors import ConfigError
-from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.wear import LABEL_POINTS, WornFlanks
 from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
 from siggen.record.specimen_state import specimen_state, state_teeth
@@ -58,7 +57,7 @@ def test_rows_tell_the_depths_of_all_teeth_of_each_gear() -> None:
 
 def test_worn_gears_that_are_perfect_otherwise_stay_on_mesh_lines() -> None:
     """18 turns of the pinion, 50 samples per mesh period: all that is no harmonic of it stands in other lines."""
-    config = config_with(WEAR).model_copy(update={"fs_hz": 27000.0, "duration_s": 0.6})
+    config = config_with(WEAR).with_sections(fs_hz=27000.0, duration_s=0.6)
     healthy, worn = simulate(config, [0, 1])
     assert isinstance(healthy, SimulatedRecord)
     assert isinstance(worn, SimulatedRecord)
@@ -78,7 +77,7 @@ def test_worn_gears_that_are_perfect_otherwise_stay_on_mesh_lines() -> None:
 def test_the_loss_of_stiffness_of_an_even_layer_is_its_share_of_the_approach() -> None:
     """Closed form: a layer d off every flank adds d to the approach x at any load: F/x loses d/(x + d) at most."""
     config = config_with(WEAR)
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     state = specimen_state(specimen, 0)
     layer = WornFlanks("pinion", (5e-6,) * 9)
     teeth = state_teeth(specimen, all_teeth(specimen)[0], 0).tables
@@ -91,16 +90,16 @@ def test_the_loss_of_stiffness_of_an_even_layer_is_its_share_of_the_approach() -
 
 def test_worn_records_tell_a_loss_of_stiffness_that_grows_and_a_sham_none() -> None:
     config = config_with({**WEAR, "depth_um": 5.0}, WEAR, {**WEAR, "depth_um": 25.0})
-    states = (*config.states[:3], config.states[3].model_copy(update={"acts": False}))
-    config = config.model_copy(update={"states": states})
-    loss = [specimen_state(draw_specimen(config, 0), n).static.largest_loss(60.0) for n in range(4)]
+    states = (*config.config.states[:3], config.config.states[3].model_copy(update={"acts": False}))
+    config = config.with_sections(states=states)
+    loss = [specimen_state(config.gearbox(0), n).static.largest_loss(60.0) for n in range(4)]
     assert loss[0] == loss[3] == 0.0
     assert 0.05 < loss[1] < loss[2] < 1.0
 
 
 def test_fm4_of_worn_gears_is_that_of_healthy_ones_in_the_same_noise() -> None:
     """All that wear adds stands in mesh lines, which the difference signal leaves out."""
-    config = config_with(WEAR).model_copy(update={"fs_hz": 27000.0, "duration_s": 0.6})
+    config = config_with(WEAR).with_sections(fs_hz=27000.0, duration_s=0.6)
     noise = np.random.default_rng(3).standard_normal(config.samples)
     found = []
     for record in simulate(config, [0, 1]):

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from unittest.mock import patch
 
 if TYPE_CHECKING:
-    from siggen.config import Config
+    from siggen.gearbox.design import SetDesign
 
 SPECIMENS, PARTS = 6, 3
 """Of the set that is killed, made in parts or extended."""
@@ -26,7 +26,7 @@ OVERRIDES = (
 )
 
 
-def default_model(specimens: int = SPECIMENS) -> Config:
+def default_model(specimens: int = SPECIMENS) -> SetDesign:
     """Return the quickstart (casing, tooth pairs, contact across the face) with two states and short records."""
     import siggen
 

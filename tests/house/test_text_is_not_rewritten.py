@@ -10,7 +10,7 @@ import pytest
 from tests.house.source_tree import modules, tree
 
 READS = {
-    "siggen.config.yaml_source": "numbers of a YAML file",
+    "siggen.keys.yaml_source": "numbers of a YAML file",
     "diagnostics.recordings.text_files": "text files of others",
     "diagnostics.recordings.units": "units of others",
 }
@@ -24,7 +24,7 @@ SHOWS = {
     "diagnostics.page.live": "data inside a script",
     "diagnostics.page.security_policy": "line ends of a script, as browsers hash it",
     "diagnostics.report.report": "a sentence without its markup",
-    "siggen.publication.physics_sections": "the cell of a table in Markdown",
+    "siggen.gearbox.physics_sections": "the cell of a table in Markdown",
     "siggen.dataset.object_path": "an address of an object store",
     "siggen.sets.run_journal": "a time in UTC",
 }

@@ -12,7 +12,6 @@ import siggen
 from siggen import Chip, Crack, Damage, Gear, GearPair, Pit, Spall, State, Wear, mesh_stiffness, pits_in_layers
 from siggen.arrays import FloatArray
 from siggen.errors import UsageError
-from siggen.gearbox.draw import draw_specimen
 from siggen.gears.contact.contact_table import contact_table
 from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.outlines import rectangle
@@ -77,7 +76,7 @@ def test_the_study_of_paper_a_is_a_loop_of_two_lines() -> None:
     config = siggen.load_config(
         "paper_a", [f"states.{name}.damage.teeth=[0]" for name in ("slight", "moderate", "severe")]
     )
-    (of_file,) = (curve for curve in stiffness_curves(draw_specimen(config, 0)) if curve.state == "moderate")
+    (of_file,) = (curve for curve in stiffness_curves(config.gearbox(0)) if curve.state == "moderate")
     sound, worst, losses = mesh_stiffness(PAIR, law="linear", tooth="base_circle"), [], []
     for height_mm in (1.0, 1.9, 2.8):
         pits = pits_in_layers("pinion", layers=1, pits_per_layer=16, first_height_mm=height_mm)
@@ -98,7 +97,7 @@ def test_a_state_of_a_gearbox_has_the_curve_of_its_mesh_under_the_torque_of_its_
     gearbox = siggen.draw(config, 1)
     torque_nm = gearbox.points[0].torque_nm
     curves = {state.name: mesh_stiffness(gearbox, state.name) for state in gearbox.states}
-    for known in stiffness_curves(draw_specimen(config, 1), torque_nm=torque_nm):
+    for known in stiffness_curves(config.gearbox(1), torque_nm=torque_nm):
         assert np.array_equal(curves[known.state].angle_rad, known.angle_rad)
         assert np.array_equal(curves[known.state].stiffness_n_per_m, known.mesh_stiffness_n_per_m)
     assert f"{torque_nm:.3g}\u00a0N\u00a0m" in curves["healthy"].meaning

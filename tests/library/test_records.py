@@ -186,7 +186,7 @@ def test_what_is_no_gearbox_no_case_and_no_configuration_is_refused(gearbox: sig
         siggen.run("bench", speed_hz=25, torque_nm=40)  # type: ignore[arg-type]
     with pytest.raises(UsageError, match="cases: received 'healthy'; allowed: objects of Case"):
         next(siggen.runs(gearbox, ["healthy"]))  # type: ignore[list-item]
-    with pytest.raises(UsageError, match="config: received 'bench'; allowed: what load_config returns"):
+    with pytest.raises(UsageError, match="design: received 'bench'; allowed: what load_config returns"):
         siggen.draw("bench")  # type: ignore[arg-type]
 
 
@@ -206,3 +206,6 @@ def test_a_motor_slips_by_the_torque_of_its_gearbox_at_any_torque_that_is_asked_
     expected = 20.0 * (1.0 - 0.05 * 10.0 / 60.0)
     for found in (of_set, asked):
         assert 1.0 / np.diff(found.tacho_s).mean() == pytest.approx(expected, rel=2e-3)
+    weak = siggen.draw(siggen.load_config({**raw, "variation": {"speed": {"slip": 0.2}, "torque": {}}}))
+    with pytest.raises(UsageError, match=r"torque_nm: received 200, a slip of 67%; allowed: below 150, at which the"):
+        siggen.run(weak, speed_hz=20.0, torque_nm=200.0)

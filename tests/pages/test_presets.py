@@ -15,12 +15,11 @@ from diagnostics.audit.measured_set import measured_set
 from diagnostics.audit.separability_findings import separability_findings, verdict
 from siggen.checks.loading import load_config
 from siggen.checks.plausibility import implausible
-from siggen.config import Config
 from siggen.config.inheritance import inherited
 from siggen.config.state_keys import complete_states
-from siggen.config.yaml_source import read_yaml
 from siggen.gearbox.configured import pair_of
-from siggen.gearbox.possible import PossibleGearbox
+from siggen.gearbox.design import SetDesign
+from siggen.keys.yaml_source import read_yaml
 from siggen.planning.plan import SPLITS, split_of
 from siggen.sets.verification import verify
 from tests.simulated import simulate
@@ -32,7 +31,7 @@ SHARES = [0.2, 0.4, 0.8, 0.95]
 THROUGH = "through_100"
 
 
-def preset(name: str, states: tuple[str, ...], **changes: Any) -> Config:
+def preset(name: str, states: tuple[str, ...], **changes: Any) -> SetDesign:
     """Return a preset with some of its states; those that lose the state they grew from begin with an intact gear."""
     raw = inherited(read_yaml(CONFIGS / f"{name}.yaml"), CONFIGS)
     complete = complete_states(raw["states"])[0]
@@ -51,8 +50,8 @@ def test_a_preset_in_miniature_is_generated_and_verified(tmp_path: Path) -> None
 @pytest.mark.parametrize("name", PRESETS)
 def test_the_ladder_of_a_preset_is_dense_where_damage_begins_to_show(name: str) -> None:
     config = load_config(CONFIGS / f"{name}.yaml")
-    damages = [state.damage for state in config.states if state.name.startswith(("face_", "through_"))]
-    width = config.gears.face_width_mm
+    damages = [state.damage for state in config.config.states if state.name.startswith(("face_", "through_"))]
+    width = config.config.gears.face_width_mm
     shares = [d.face_share if d.kind == "irregular" else d.face_length_mm / width for d in damages]
     assert shares == [*SHARES, *(1.0 for _ in LENGTHS_MM)]
     assert [d.profile_length_mm for d in damages if d is not None] == [*(1.0 for _ in SHARES), *LENGTHS_MM]
@@ -62,7 +61,7 @@ def test_the_ladder_of_a_preset_is_dense_where_damage_begins_to_show(name: str) 
 @pytest.mark.parametrize("name", PRESETS)
 def test_every_gearbox_of_a_preset_has_two_healthy_records(name: str) -> None:
     config = load_config(CONFIGS / f"{name}.yaml")
-    assert sum(state.damage is None for state in config.states) * config.repeats >= 2
+    assert sum(state.damage is None for state in config.config.states) * config.repeats >= 2
 
 
 @pytest.mark.slow
@@ -125,12 +124,12 @@ MODULES_OF_ISO_54 = {1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0}
 def test_families_holds_many_usual_pairs_that_hunt_and_keeps_each_in_one_split() -> None:
     """Loading checks every pair; a change of the drawing of pairs would give the preset another identity."""
     config = load_config(CONFIGS / "families.yaml")
-    pairs = config.gears.pairs
+    pairs = config.config.gears.pairs
     assert len(pairs) >= 50
     assert {pair.module_mm for pair in pairs} <= MODULES_OF_ISO_54
     assert all(math.gcd(*pair.teeth) == 1 and pair.teeth[0] >= 17 for pair in pairs)
     assert all(7.7 <= pair.face_width_mm / pair.module_mm <= 15.3 for pair in pairs)
-    found = {pair_of(config, i): split_of(config, i) for i in range(len(pairs))}
+    found = {pair_of(config.config, i): split_of(config, i) for i in range(len(pairs))}
     assert [sum(split == name for split in found.values()) for name in SPLITS] == [36, 12, 12]
     assert str(pairs[0]) == "17/35 teeth, m 2.5, b 32 mm"
-    assert implausible(PossibleGearbox(config)) == ()
+    assert implausible(config.possible) == ()

@@ -9,7 +9,7 @@ import pytest
 
 from siggen.config import parse
 from siggen.gearbox.configured import gearbox_config, pair_of
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.planning.plan import SPLITS, specimen_count, split_of
 from tests.config.minimal import by_name, config, minimal
 
@@ -45,15 +45,15 @@ def test_drawn_pairs_lie_in_their_ranges_differ_and_hunt() -> None:
 
 def test_split_by_pair_shares_no_pair_between_splits_and_counts_without_listing() -> None:
     made = config(gears__pairs=RANGES, splits__by="pair", specimens=130)
-    members = {split: [i for i in range(130) if split_of(made, i) == split] for split in SPLITS}
+    members = {split: [i for i in range(130) if split_of(SetDesign(made), i) == split] for split in SPLITS}
     pairs = {split: {pair_of(made, i) for i in members[split]} for split in SPLITS}
     assert [len(pairs[split]) for split in SPLITS] == [24, 8, 8]
     assert not pairs["train"] & pairs["test"]
     assert not pairs["train"] & pairs["validation"]
-    assert [specimen_count(made, split) for split in SPLITS] == [len(members[s]) for s in SPLITS]
+    assert [specimen_count(SetDesign(made), split) for split in SPLITS] == [len(members[s]) for s in SPLITS]
     by_gearbox = config(gears__pairs=RANGES, specimens=130)
     assert by_gearbox.identity != made.identity
-    assert any(split_of(by_gearbox, i) != split_of(made, i) for i in range(40))
+    assert any(split_of(SetDesign(by_gearbox), i) != split_of(SetDesign(made), i) for i in range(40))
 
 
 @pytest.mark.parametrize(
@@ -105,7 +105,7 @@ def test_a_gearbox_draws_gear_teeth_and_oil_once_for_all_of_its_states_and_place
         assert gearbox_config(own, specimen_id) == own
         slight, severe = (state.damage for state in own.states[1:])
         assert (slight.gear, slight.teeth) == (severe.gear, severe.teeth)  # type: ignore[union-attr]
-        oil, horizontal = draw_specimen(made, specimen_id).labels.values()
+        oil, horizontal = SetDesign(made).gearbox(specimen_id).labels.values()
         assert oil == own.dynamics.friction.oil
         assert 20.0 <= float(str(horizontal)) <= 60.0
         seen.update((slight.gear, slight.teeth, own.dynamics.friction.oil))  # type: ignore[union-attr]

@@ -7,10 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.gearbox.draw import draw_operating_point, draw_specimen
 from siggen.gearbox.pair import gear_pair
 from siggen.gearbox.tooth_law import tooth_law
-from tests.config.minimal import config
+from tests.config.minimal import design
 
 SPREAD = {
     "gears__module_mm": [2.5, 3.5],
@@ -28,28 +27,28 @@ SPREAD = {
 }
 
 
-DRAWN, OF_MANY = config(**SPREAD), config(**SPREAD, specimens=10**7)
+DRAWN, OF_MANY = design(**SPREAD), design(**SPREAD, specimens=10**7)
 
 
 @given(st.integers(0, 10**6))
 def test_a_specimen_does_not_depend_on_the_number_of_specimens(specimen):
-    assert draw_specimen(DRAWN, specimen) == draw_specimen(OF_MANY, specimen)
+    assert DRAWN.gearbox(specimen) == OF_MANY.gearbox(specimen)
 
 
 @given(st.integers(0, 10**6))
 def test_values_lie_within_their_distributions(specimen):
-    drawn = draw_specimen(DRAWN, specimen)
+    drawn = DRAWN.gearbox(specimen)
     assert 2.5e-3 <= drawn.pair.pinion.module_m <= 3.5e-3
     assert drawn.pair.pinion.bore_radius_m in (8e-3, 9e-3, 10e-3)
     assert 6e7 <= drawn.train.first.gear.bearing.stiffness_y_n_per_m <= 1.2e8
-    point = draw_operating_point(DRAWN, specimen, 1)
+    point = DRAWN.drawn_points(specimen)[1]
     assert 20 <= point.speed_hz <= 35
     assert 30 <= point.torque_nm <= 80
 
 
 @pytest.fixture(scope="module")
 def thousand():
-    return [draw_specimen(DRAWN, i) for i in range(1000)]
+    return [DRAWN.gearbox(i) for i in range(1000)]
 
 
 def test_specimens_differ(thousand):
@@ -71,24 +70,24 @@ def test_specimens_differ(thousand):
     ],
 )
 def test_a_new_distribution_or_setting_leaves_all_other_draws_alone(change):
-    before, after = DRAWN, config(**SPREAD, **change)
-    old, new = draw_specimen(before, 3), draw_specimen(after, 3)
+    before, after = DRAWN, design(**SPREAD, **change)
+    old, new = before.gearbox(3), after.gearbox(3)
     assert old.pair.pinion.module_m == new.pair.pinion.module_m
     assert old.pair.pinion.bore_radius_m == new.pair.pinion.bore_radius_m
     assert old.law.damping_ratio == new.law.damping_ratio
     assert old.train.first.gear.bearing == new.train.first.gear.bearing
     assert old.channels[0].gain == new.channels[0].gain
-    assert draw_operating_point(before, 3, 1) == draw_operating_point(after, 3, 1)
+    assert before.drawn_points(3)[1] == after.drawn_points(3)[1]
 
 
 def test_more_operating_points_leave_existing_ones_alone():
-    more = config(**{**SPREAD, "operating_points": SPREAD["operating_points"][:1] * 5})
+    more = design(**{**SPREAD, "operating_points": SPREAD["operating_points"][:1] * 5})
     for point in range(2):
-        assert draw_operating_point(DRAWN, 3, point) == draw_operating_point(more, 3, point)
+        assert DRAWN.drawn_points(3)[point] == more.drawn_points(3)[point]
 
 
 def test_operating_points_of_a_specimen_are_drawn_independently():
-    speeds = np.array([[draw_operating_point(DRAWN, i, k).speed_hz for k in (0, 1)] for i in range(400)])
+    speeds = np.array([[DRAWN.drawn_points(i)[k].speed_hz for k in (0, 1)] for i in range(400)])
     # 400 independent pairs: the correlation has a standard deviation of 0.05
     assert abs(np.corrcoef(speeds.T)[0, 1]) < 0.2
     assert len(np.unique(speeds)) == 800
@@ -108,8 +107,8 @@ def test_draws_follow_the_distribution(thousand):
 
 
 def test_constants_need_no_luck():
-    constants = config(dynamics__friction__boundary_friction=0.09, dynamics__friction__roughness_um=0.4)
-    drawn = draw_specimen(constants, 5)
-    assert drawn.pair == gear_pair(constants.gears)
-    assert drawn.law == tooth_law(constants.dynamics)
+    constants = design(dynamics__friction__boundary_friction=0.09, dynamics__friction__roughness_um=0.4)
+    drawn = constants.gearbox(5)
+    assert drawn.pair == gear_pair(constants.config.gears)
+    assert drawn.law == tooth_law(constants.config.dynamics)
     assert drawn.channels[0].gain == 1.0

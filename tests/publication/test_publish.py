@@ -12,8 +12,8 @@ import yaml
 import siggen
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError, UsageError
-from siggen.publication.dataset_info import class_names
-from siggen.publication.physics_sections import assumed_numbers_section, physics_section
+from siggen.gearbox.description import class_words
+from siggen.gearbox.physics_sections import assumed_numbers_section, physics_section
 from siggen.publication.publication_facts import TEMPLATE, read_publication_facts
 from siggen.publication.publish import publish
 from siggen.publication.spdx_licence import _identifiers
@@ -169,7 +169,7 @@ def test_the_header_has_the_features_that_datasets_would_write(kept: Path, publi
 
 
 def test_class_labels_name_the_gears_of_every_mesh_and_of_planetary_sets() -> None:
-    named = [class_names(load_config(raw))["faulty_gear"] for raw in (staged(), planets())]
+    named = [class_words(load_config(raw))["faulty_gear"] for raw in (staged(), planets())]
     assert named[0] == ("none", "pinion", "gear", "slow_pinion", "slow_gear", "several")
     assert named[1] == ("none", "sun", "planet", "ring", "several")
 

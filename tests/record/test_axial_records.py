@@ -10,8 +10,8 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.gearbox.design import SetDesign
 from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
@@ -22,7 +22,7 @@ AXIAL = [
 HELIX_DEG = 15.0
 
 
-def helical(helix_deg: float = HELIX_DEG, **changes: Any) -> Config:
+def helical(helix_deg: float = HELIX_DEG, **changes: Any) -> SetDesign:
     dynamics = {"model": "8dof", "mesh": {"law": "linear"}}
     own = minimal(
         states={"healthy": {}},

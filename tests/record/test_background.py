@@ -11,12 +11,11 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config
 from siggen.dynamics.time.response_stream import Piece
 from siggen.errors import ConfigError
 from siggen.gearbox.background import BearingLevels, RubbingLevels, drawn_background
 from siggen.gearbox.background_numbers import BaseNumbers
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.housing import Block
 from siggen.gearbox.specimen import Specimen
 from siggen.planning.plan import planned_record
@@ -57,43 +56,43 @@ def quick_mounts(monkeypatch: pytest.MonkeyPatch) -> None:
     fix(monkeypatch, BaseNumbers, horizontal_hz=40.0, vertical_hz=40.0, rocking_hz=40.0)
 
 
-def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
+def loaded(*sensors: dict[str, Any], **changes: Any) -> SetDesign:
     changes = {"dynamics__model": "casing", "duration_s": 0.1, "specimens": 2, **changes}
     return load_config(minimal(sensors=by_name(sensors or (ON_LID, PLAIN)), **changes))
 
 
-def record(config: Config, record_id: int = 0) -> SimulatedRecord:
+def record(config: SetDesign, record_id: int = 0) -> SimulatedRecord:
     result = simulate(config, [record_id])[0]
     assert isinstance(result, SimulatedRecord), result
     return result
 
 
-def added(config: Config, record_id: int = 0) -> tuple[dict[str, np.ndarray], dict[str, object]]:
+def added(config: SetDesign, record_id: int = 0) -> tuple[dict[str, np.ndarray], dict[str, object]]:
     """Return what the background adds to every channel, and its labels."""
     planned = planned_record(config, record_id)
-    specimen = draw_specimen(config, planned.specimen_id)
+    specimen = config.gearbox(planned.specimen_id)
     instrument = specimen_instrument(specimen)
     inputs = BlockInputs(specimen, planned, record_rotation(specimen, planned), Standstill(instrument), instrument)
     blocks = list(inputs.seen())
     return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}, inputs.labels
 
 
-def rubbed(changes: dict[str, float], duration_s: float) -> tuple[Config, RubbingLevels]:
+def rubbed(changes: dict[str, float], duration_s: float) -> tuple[SetDesign, RubbingLevels]:
     """Return a configuration, and its drawn rubbing at a still level, some of it changed."""
     config = loaded(background={"rubbing": {}}, duration_s=duration_s)
-    drawn = drawn_background(config, 0)
+    drawn = drawn_background(config.config, 0)
     assert drawn is not None
     assert drawn.rubbing is not None
     return config, replace(drawn.rubbing, **{"level_std": 0.0, **changes})
 
 
-def whole_course(config: Config) -> BackgroundCourse:
+def whole_course(config: SetDesign) -> BackgroundCourse:
     """Return the course of the first record over its samples."""
-    specimen, planned = draw_specimen(config, 0), planned_record(config, 0)
+    specimen, planned = config.gearbox(0), planned_record(config, 0)
     return course_at(specimen, planned, record_rotation(specimen, planned), 0, config.samples)
 
 
-def background_ways(config: Config, specimen: Specimen) -> tuple[SpecimenBackground, np.ndarray]:
+def background_ways(config: SetDesign, specimen: Specimen) -> tuple[SpecimenBackground, np.ndarray]:
     """Return a background with its responses, and their frequencies."""
     assert specimen.background is not None
     frequency = np.arange(0.0, 0.5 * config.fs_hz, 10.0)
@@ -102,7 +101,7 @@ def background_ways(config: Config, specimen: Specimen) -> tuple[SpecimenBackgro
     return specimen_background(specimen, specimen.background, ways, frequency), frequency
 
 
-def response_ways(config: Config, specimen: Specimen) -> dict[str, complex]:
+def response_ways(config: SetDesign, specimen: Specimen) -> dict[str, complex]:
     """Return what a channel sees of a second mesh's force at the highest frequency, its own shafts left out."""
     assert specimen.background is not None
     frequency = np.array([0.0, 0.45 * config.fs_hz])
@@ -175,9 +174,9 @@ def test_a_second_stage_turns_the_housing_and_pushes_it_nowhere() -> None:
     places = (0.0, 100.0, -200.0)
     lids = [{**LID, "name": f"lid{k}", "position_mm": [x, 0.0]} for k, x in enumerate(places)]
     config = loaded(*lids, housing=RIGID, background={"second_stage": {"order": 4.13}})
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     ways = response_ways(config, specimen)
-    gears, casing = config.gears, specimen.housing
+    gears, casing = config.config.gears, specimen.housing
     assert isinstance(casing, Block)
     centre_mm = 0.5 * gears.module_mm * (gears.pinion.teeth + gears.gear.teeth)
     arm_m = 1e-3 * centre_mm * np.cos(np.radians(gears.pressure_angle_deg))
@@ -201,7 +200,7 @@ def test_a_rotor_out_of_balance_shakes_gearbox_and_base_as_one_mass(monkeypatch:
     centre = {**LID, "position_mm": [0.0, 0.0]}
     config = loaded(centre, housing=RIGID, background={"base": base, "shafts": shafts}, duration_s=1.0)
     signal = added(config)[0]["lid_vertical"]
-    background = draw_specimen(config, 0).background
+    background = config.gearbox(0).background
     assert background is not None
     rotor = background.shafts["pinion"]
     angle = 2.0 * np.pi * 30.0 * np.arange(signal.size) / config.fs_hz
@@ -261,7 +260,7 @@ def test_bearings_have_the_velocities_of_their_class_at_its_speed_and_their_wave
 def test_what_moves_slowly_between_shaft_and_seat_presses_on_nothing() -> None:
     """In series with its spring, far below all modes: the shaft gives way, the housing feels m ω² e of it."""
     config = loaded({**LID, "position_mm": [0.0, 0.0]}, housing=RIGID, background={"bearings": {}})
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     background, frequency = background_ways(config, specimen)
     k = background.inputs.index("pinion_bearing/vertical")
     place = int(np.argmin(np.abs(frequency - 40.0)))
@@ -298,7 +297,7 @@ def test_a_random_level_gives_the_noise_of_bearings_its_tails_and_no_power() -> 
     found: dict[float, dict[str, np.ndarray]] = {}
     for std in (0.0, 0.7):
         config = loaded(background={"bearings": {}}, duration_s=20.0)
-        specimen, planned = draw_specimen(config, 0), planned_record(config, 0)
+        specimen, planned = config.gearbox(0), planned_record(config, 0)
         drawn = specimen.background
         assert drawn is not None
         quick = {"level_time_s": 1e-3, "shaft_depth": 0.0, "level_std": std, "compliance_m": 0.0}

@@ -12,9 +12,8 @@ import siggen.record.simulation as simulation
 import siggen.sensing.block_filter as block_filter
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config
 from siggen.gearbox.background_numbers import BaseNumbers, BurstNumbers
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.planning.plan import planned_record
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
@@ -40,13 +39,13 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     fix(monkeypatch, BurstNumbers, rate_hz=20.0)
 
 
-def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
+def loaded(*sensors: dict[str, Any], **changes: Any) -> SetDesign:
     changes = {"dynamics__model": "casing", "duration_s": 0.4, "specimens": 2, "fs_hz": 25600.0, **changes}
     changes = {"variation": VARYING, **changes}
     return load_config(minimal(sensors=by_name(sensors or (LID, PLAIN)), **changes))
 
 
-def record(config: Config, record_id: int = 0) -> SimulatedRecord:
+def record(config: SetDesign, record_id: int = 0) -> SimulatedRecord:
     result = simulate(config, [record_id])[0]
     assert isinstance(result, SimulatedRecord), result
     return result
@@ -55,7 +54,7 @@ def record(config: Config, record_id: int = 0) -> SimulatedRecord:
 def test_blocks_join_without_a_seam_to_one_convolution(monkeypatch: pytest.MonkeyPatch) -> None:
     """Motion and forces of the whole record, convolved with the impulse responses by scipy: no block, no overlap."""
     config = loaded(variation={}, duration_s=0.2)
-    specimen, planned = draw_specimen(config, 0), planned_record(config, 0)
+    specimen, planned = config.gearbox(0), planned_record(config, 0)
     instrument = specimen_instrument(specimen)
     response, _ = record_response(specimen, specimen_state(specimen, 0), planned)
     before, grid = response.before, instrument.blocks.grid

@@ -8,10 +8,9 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.gearbox.configured import state_config
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
@@ -19,7 +18,7 @@ SPREAD = [0.05, 0.10]
 HOT = {"name": "hot", "fault": "lubrication", "severity": "moderate"}
 
 
-def config(*states: dict[str, Any], **more: Any) -> Config:
+def config(*states: dict[str, Any], **more: Any) -> SetDesign:
     dynamics = {"model": "8dof", "mesh_damping_ratio": SPREAD, "mesh": {"law": "linear"}, "friction": {"model": "off"}}
     raw = minimal(specimens=2, duration_s=0.05, fs_hz=20480.0, mesh_harmonics=3, dynamics=dynamics)
     sensors = [{"name": "bearing", "gain": [0.95, 1.05]}, {"name": "other"}]
@@ -30,7 +29,7 @@ def changed(changes: dict[str, Any], **more: Any) -> dict[str, Any]:
     return {**HOT, "changes": changes, **more}
 
 
-def record(chosen: Config, record_id: int) -> SimulatedRecord:
+def record(chosen: SetDesign, record_id: int) -> SimulatedRecord:
     result = simulate(chosen, [record_id])[0]
     assert isinstance(result, SimulatedRecord), result
     return result
@@ -71,8 +70,8 @@ def test_a_patch_is_the_set_whose_healthy_gearbox_has_these_numbers() -> None:
 def test_factor_and_shift_act_on_what_the_healthy_gearbox_drew() -> None:
     chosen = config(changed({"dynamics.mesh_damping_ratio": {"times": 2}, "dynamics.backlash_um": {"add": 40}}))
     for gearbox in range(2):
-        healthy = draw_specimen(chosen, gearbox).law
-        own = draw_specimen(state_config(chosen, gearbox, 1), gearbox).law
+        healthy = chosen.gearbox(gearbox).law
+        own = SetDesign(state_config(chosen.config, gearbox, 1)).gearbox(gearbox).law
         assert own.damping_ratio == 2.0 * healthy.damping_ratio
         assert own.backlash_m == pytest.approx(healthy.backlash_m + 40e-6, rel=1e-12)
 
@@ -81,11 +80,14 @@ def test_a_drawn_change_belongs_to_gearbox_and_state_and_stays_while_it_grows() 
     wide = {"dynamics.backlash_um": {"add": [10, 200]}}
     worse = {"name": "worse", "fault": "lubrication", "severity": "severe", "grows": "hot"}
     chosen = config(changed(wide), {**worse, "changes": {"dynamics.motor_inertia_kg_m2": {"times": 2}}})
-    drawn = [[draw_specimen(state_config(chosen, g, s), g) for s in range(3)] for g in range(2)]
+    drawn = [[SetDesign(state_config(chosen.config, g, s)).gearbox(g) for s in range(3)] for g in range(2)]
     assert drawn[0][1].law.backlash_m == drawn[0][2].law.backlash_m != drawn[1][1].law.backlash_m
     healthy, heavy = (drawn[0][s].train.first.motor_inertia_kg_m2 for s in (0, 2))  # type: ignore[union-attr]
     assert heavy == 2.0 * healthy
-    assert [one.path for _, one in chosen.changes_of(2)] == ["dynamics.backlash_um", "dynamics.motor_inertia_kg_m2"]
+    assert [one.path for _, one in chosen.config.changes_of(2)] == [
+        "dynamics.backlash_um",
+        "dynamics.motor_inertia_kg_m2",
+    ]
 
 
 def test_a_sensors_fault_is_in_its_channel_alone() -> None:

@@ -9,8 +9,8 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, record_schema
-from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.gearbox.design import SetDesign
 from siggen.sets.drawn import set_columns
 from tests.config.minimal import by_name, minimal
 from tests.simulated import damage_rows, simulate
@@ -23,7 +23,7 @@ PITS = {
 SPALL = {"kind": "spall", "gear": "gear", "teeth": [20], **SIZE}
 
 
-def config(*states: dict[str, Any]) -> Config:
+def config(*states: dict[str, Any]) -> SetDesign:
     dynamics = {"model": "8dof", "mesh": {"law": "linear"}, "friction": {"model": "off"}}
     small = {"specimens": 1, "duration_s": 0.2, "fs_hz": 20480.0, "mesh_harmonics": 3, "dynamics": dynamics}
     sensors = [{"name": "bearing", "noise": None, "bits": None}]
@@ -34,7 +34,7 @@ def state(*damage: dict[str, Any], **more: Any) -> dict[str, Any]:
     return {"name": "severe", "damage": [*damage], **more}
 
 
-def record(chosen: Config, record_id: int = 1) -> SimulatedRecord:
+def record(chosen: SetDesign, record_id: int = 1) -> SimulatedRecord:
     result = simulate(chosen, [record_id])[0]
     assert isinstance(result, SimulatedRecord), result
     return result

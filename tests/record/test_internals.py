@@ -13,7 +13,7 @@ from siggen.columns.record import SimulatedRecord
 from siggen.config import parse, parse_yaml
 from siggen.dynamics.mesh.contact_names import OF_CONTACT_ALONE
 from siggen.errors import ConfigError
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.planning.plan import planned_record
 from siggen.record.quantities import internal_quantities
 from siggen.record.simulation import record_response
@@ -83,7 +83,7 @@ def test_a_configuration_not_loaded_from_a_file_is_refused_before_anything_is_st
         parse_yaml(Path("tests/configs/linear_pits.yaml").read_text() + "\ninternals: {quantities: [x_casing_m]}\n")
     )
     with pytest.raises(ConfigError, match=r"internals\.quantities\.0: received 'x_casing_m'"):
-        stored_quantities(parsed.config)
+        stored_quantities(SetDesign(parsed.config))
 
 
 def test_what_only_a_contact_has_is_undefined_exactly_where_a_pair_carries_nothing() -> None:
@@ -101,7 +101,7 @@ def test_what_only_a_contact_has_is_undefined_exactly_where_a_pair_carries_nothi
 
 def test_the_transmission_error_of_tooth_pairs_holds_rotation_and_shifts_of_the_gears() -> None:
     config = load_config("tests/configs/casing.yaml", SHORT)
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     table = internals_table(config, 0)
     pair = specimen.pair
     assembled = structure(specimen)
@@ -125,7 +125,7 @@ STREAMED = ["specimens=1", "internals.quantities=[all]"]
 )
 def test_streamed_internals_are_those_of_the_whole_response_to_the_last_bit(name: str) -> None:
     config = load_config(name, [*STREAMED, "duration_s=0.2"])  # more than two blocks
-    planned, specimen = planned_record(config, 1), draw_specimen(config, 0)
+    planned, specimen = planned_record(config, 1), config.gearbox(0)
     (record,) = simulate(config, [1])
     state = specimen_state(specimen, planned.state_id)
     response, _ = record_response(specimen, state, planned, internals=True)

@@ -10,7 +10,6 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import planned_record
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
@@ -65,7 +64,7 @@ def _forget() -> None:
 
 def _motion(config, record_id: int) -> dict[str, bytes]:
     """Return the clean response in double precision, which the float32 of a stored signal may hide a difference of."""
-    specimen, planned = draw_specimen(config, 0), planned_record(config, record_id)
+    specimen, planned = config.gearbox(0), planned_record(config, record_id)
     response, _ = record_response(specimen, specimen_state(specimen, planned.state_id), planned)
     return {name: values.tobytes() for name, values in response.acceleration_m_s2.items()}
 

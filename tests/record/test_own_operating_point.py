@@ -21,7 +21,7 @@ def records_of_the_first_point(folder: Path, points: str, states: tuple[int, ...
     file = folder / f"{len(points)}.yaml"
     file.write_text(f"extends: quickstart\nname: same\noperating_points: [{points}]\n", encoding="utf-8")
     config = load_config(file, SHORT)
-    per_state = len(config.operating_points) * config.repeats
+    per_state = len(config.config.operating_points) * config.repeats
     found = simulate(config, [state * per_state for state in states])
     assert all(isinstance(record, SimulatedRecord) for record in found), found
     return {record.planned.state_id: record for record in found if isinstance(record, SimulatedRecord)}

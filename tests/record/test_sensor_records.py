@@ -9,9 +9,8 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.mode_table import seats_of
 from siggen.names import PAIR
 from siggen.planning.plan import planned_record
@@ -35,11 +34,11 @@ def raw(*sensors: dict[str, Any], **changes: Any) -> dict[str, Any]:
     return minimal(sensors=by_name(sensors), **changes)
 
 
-def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
+def loaded(*sensors: dict[str, Any], **changes: Any) -> SetDesign:
     return load_config(raw(*sensors, **changes))
 
 
-def record(config: Config, record_id: int = 0) -> SimulatedRecord:
+def record(config: SetDesign, record_id: int = 0) -> SimulatedRecord:
     result = simulate(config, [record_id])[0]
     assert isinstance(result, SimulatedRecord), result
     return result
@@ -53,7 +52,7 @@ def problems(*sensors: dict[str, Any], **changes: Any) -> dict[str, str]:
 
 def test_a_sensor_on_a_plate_sees_bearing_forces_through_all_modes() -> None:
     config = loaded(UP, {**LID, "name": "wall", "place": "wall"})
-    channels, specimen = record(config).channels, draw_specimen(config, 0)
+    channels, specimen = record(config).channels, config.gearbox(0)
     response, _ = record_response(specimen, specimen_state(specimen, 0), planned_record(config, 0))
     housing = specimen_housing(specimen)
     assert housing is not None
@@ -75,7 +74,7 @@ def test_a_sensor_on_a_plate_sees_bearing_forces_through_all_modes() -> None:
 
 def test_a_rigid_casing_shows_its_own_motion() -> None:
     config = loaded(RIGID)
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     response, _ = record_response(specimen, specimen_state(specimen, 0), planned_record(config, 0))
     expected = response.acceleration_m_s2["casing_lid/vertical"].astype(np.float32)
     np.testing.assert_array_equal(record(config).channels["lid_vertical"], expected)

@@ -10,7 +10,7 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config
+from siggen.gearbox.design import SetDesign
 from siggen.record import simulation
 from tests.config.planets import planets
 from tests.simulated import simulate
@@ -32,7 +32,7 @@ def planetary() -> dict[str, Any]:
     )
 
 
-def signals(config: Config) -> dict[str, Any]:
+def signals(config: SetDesign) -> dict[str, Any]:
     (record,) = simulate(config, [0])
     assert isinstance(record, SimulatedRecord)
     return dict(record.channels)

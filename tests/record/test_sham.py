@@ -8,9 +8,8 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, record_schema
-from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.record.specimen_state import specimen_state
 from siggen.sets.drawn import set_columns
 from tests.config.minimal import by_name, minimal
@@ -18,7 +17,7 @@ from tests.kinds.machines import DAMAGES
 from tests.simulated import damage_rows, simulate
 
 
-def config(*states: dict[str, Any], law: str = "pairs") -> Config:
+def config(*states: dict[str, Any], law: str = "pairs") -> SetDesign:
     small = {"specimens": 1, "duration_s": 0.05, "fs_hz": 20480.0, "mesh_harmonics": 3}
     dynamics = {"model": "8dof", "mesh": {"law": law}, "friction": {"model": "off"}}
     return load_config(minimal(**small, dynamics=dynamics, states=by_name([{"name": "healthy"}, *states])))
@@ -28,7 +27,7 @@ def sham_of(kind: str) -> dict[str, Any]:
     return {"name": "sham", "acts": False, "damage": {"kind": kind, **DAMAGES[kind]}}
 
 
-def record(chosen: Config, record_id: int) -> SimulatedRecord:
+def record(chosen: SetDesign, record_id: int) -> SimulatedRecord:
     result = simulate(chosen, [record_id])[0]
     assert isinstance(result, SimulatedRecord), result
     return result
@@ -50,7 +49,7 @@ def test_springs_between_teeth_know_no_sham_either() -> None:
 
 def test_its_teeth_have_kinds_of_pairs_of_their_own() -> None:
     chosen = config(sham_of("spall"), {**sham_of("spall"), "name": "real", "acts": True, "severity": "severe"})
-    specimen = draw_specimen(chosen, 0)
+    specimen = chosen.gearbox(0)
     healthy, sham, real = (specimen_state(specimen, state).mesh.tables.table_of_pair for state in range(3))
     assert healthy.max() == 0 < sham.max() == real.max()
     assert (sham > 0).sum() == (real > 0).sum()

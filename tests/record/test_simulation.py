@@ -7,8 +7,8 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import RecordFailure, SimulatedRecord
-from siggen.config import Config
 from siggen.gearbox.configured import pair_config, pair_of
+from siggen.gearbox.design import SetDesign
 from siggen.sets.drawn import simulated
 from tests.simulated import damage_rows, internals_table, simulate
 
@@ -16,12 +16,12 @@ SMALL = ["specimens=2", "duration_s=0.1", "dynamics.input_coupling.damping_nm_s_
 
 
 @pytest.fixture(scope="module")
-def config() -> Config:
+def config() -> SetDesign:
     return load_config("tests/configs/linear_pits.yaml", SMALL)
 
 
 @pytest.fixture(scope="module")
-def specimen(config: Config) -> list[SimulatedRecord]:
+def specimen(config: SetDesign) -> list[SimulatedRecord]:
     results = list(simulated(config, range(config.records_per_specimen)))
     assert all(isinstance(r, SimulatedRecord) for r in results)
     return results  # type: ignore[return-value]
@@ -33,7 +33,7 @@ def same(a: SimulatedRecord, b: SimulatedRecord) -> bool:
 
 
 def test_a_record_is_a_function_of_configuration_and_index_alone(
-    config: Config, specimen: list[SimulatedRecord]
+    config: SetDesign, specimen: list[SimulatedRecord]
 ) -> None:
     for index in (5, 0, 3):
         alone = next(simulated(config, [index]))
@@ -41,13 +41,13 @@ def test_a_record_is_a_function_of_configuration_and_index_alone(
         assert same(alone, specimen[index])
 
 
-def test_records_of_several_specimens_come_back_in_the_order_asked_for(config: Config) -> None:
+def test_records_of_several_specimens_come_back_in_the_order_asked_for(config: SetDesign) -> None:
     per_specimen = config.records_per_specimen
     ids = [per_specimen, 0, per_specimen + 1]
     assert [r.planned.record_id for r in simulate(config, ids) if isinstance(r, SimulatedRecord)] == ids
 
 
-def test_simulating_two_specimens_as_one_is_refused(config: Config) -> None:
+def test_simulating_two_specimens_as_one_is_refused(config: SetDesign) -> None:
     with pytest.raises(ValueError, match="specimens \\[0, 1\\]"):
         simulated(config, [0, config.records_per_specimen])
 
@@ -94,7 +94,7 @@ def test_a_torque_that_no_teeth_carry_is_a_failure_of_the_records_with_the_reaso
     assert all("forces that teeth carry" in r.reason for r in results if isinstance(r, RecordFailure))
 
 
-def test_a_fault_of_the_program_is_no_failure_of_a_record(config: Config, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fault_of_the_program_is_no_failure_of_a_record(config: SetDesign, monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*_: object) -> None:
         raise ValueError("operands could not be broadcast together")
 
@@ -113,10 +113,10 @@ def test_gearboxes_of_a_set_of_pairs_are_those_of_sets_of_one_pair_with_labels_t
     config = load_config("tests/configs/linear_pits.yaml", [*SMALL, PAIRS])
     last = config.records_per_specimen - 1
     for specimen_id in range(2):
-        index = pair_of(config, specimen_id)
+        index = pair_of(config.config, specimen_id)
         assert index is not None
         record_id = specimen_id * config.records_per_specimen + last
-        found, alone = (simulate(one, [record_id])[0] for one in (config, pair_config(config, index)))
+        found, alone = (simulate(one, [record_id])[0] for one in (config, SetDesign(pair_config(config.config, index))))
         assert isinstance(found, SimulatedRecord)
         assert isinstance(alone, SimulatedRecord)
         assert all(np.array_equal(found.channels[c], alone.channels[c]) for c in alone.channels)

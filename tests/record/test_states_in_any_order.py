@@ -6,7 +6,7 @@ import numpy as np
 
 from siggen.checks.loading import load_config
 from siggen.gearbox.configured import gearbox_config
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gears.contact import contact_table
 from siggen.gears.damage import flank_damage, irregular, outlines
 from siggen.gears.stiffness import compliance
@@ -22,8 +22,8 @@ SHARED = (
     outlines.trapezoids,
     compliance._pit_pieces,
 )
-CONFIG = gearbox_config(load_config("configs/bench.yaml", ["specimens=20"]), 3)
-SPECIMEN = draw_specimen(CONFIG, 3)
+CONFIG = gearbox_config(load_config("configs/bench.yaml", ["specimens=20"]).config, 3)
+SPECIMEN = SetDesign(CONFIG).gearbox(3)
 NAMES = [state.name for state in CONFIG.states]
 
 
@@ -47,7 +47,7 @@ def test_teeth_of_a_state_are_the_same_to_the_bit_whatever_states_were_made_befo
     for name in ("face_20", "face_40"):
         for kept in SHARED:
             kept.cache_clear()
-        alone = teeth_of(all_teeth(draw_specimen(CONFIG, 3))[0], name)
+        alone = teeth_of(all_teeth(SetDesign(CONFIG).gearbox(3))[0], name)
         assert alone.labels["mesh_stiffness_loss"] != 0.0
         assert alone.damage == after_others[name].damage
         assert alone.labels == after_others[name].labels

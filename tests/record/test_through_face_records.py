@@ -9,8 +9,8 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.gearbox.design import SetDesign
 from tests.config.minimal import by_name
 from tests.simulated import simulate
 
@@ -21,7 +21,7 @@ SPALL = {
 WHOLE_FACE = "take the whole contact length"
 
 
-def config(damage: dict[str, Any] | None = None, *overrides: str) -> Config:
+def config(damage: dict[str, Any] | None = None, *overrides: str) -> SetDesign:
     spall = SPALL if damage is None else damage
     states = [{"name": "healthy"}, {"name": "damaged", "fault": "spalling", "severity": "severe", "damage": spall}]
     from siggen.config import read_yaml
@@ -30,7 +30,7 @@ def config(damage: dict[str, Any] | None = None, *overrides: str) -> Config:
     return load_config(raw, overrides)
 
 
-def record(chosen: Config, record_id: int) -> SimulatedRecord:
+def record(chosen: SetDesign, record_id: int) -> SimulatedRecord:
     result = simulate(chosen, [record_id])[0]
     assert isinstance(result, SimulatedRecord), result
     return result
@@ -38,7 +38,7 @@ def record(chosen: Config, record_id: int) -> SimulatedRecord:
 
 def test_damage_through_the_face_is_simulated_and_labelled() -> None:
     chosen = config()
-    points = len(chosen.operating_points)
+    points = len(chosen.config.operating_points)
     healthy, damaged = record(chosen, 0), record(chosen, points)
     assert damaged.labels["through_face"] is True
     # 1 mm of arc near the pitch point: l²/(8 R_e) with R_e of 6.7 mm and the edges' rounding of 0.1 mm.
@@ -66,7 +66,7 @@ def test_the_law_without_a_sink_refuses_damage_through_the_face() -> None:
 def test_the_readings_of_damage_differ_and_agree_on_healthy_teeth() -> None:
     spall = {**SPALL, "face_length_mm": 12.0, "profile_length_mm": 2.0, "depth_mm": 0.4}
     readings = [config(spall, *chosen) for chosen in (LINEAR, ["dynamics.mesh.damage=geometry"], [])]
-    point = len(readings[0].operating_points)
+    point = len(readings[0].config.operating_points)
     stiffness, geometry, both = (record(chosen, point) for chosen in readings)
     assert not np.array_equal(geometry.channels["lid_vertical"], both.channels["lid_vertical"])
     healthy = [record(chosen, 0).channels["lid_vertical"].tobytes() for chosen in readings[1:]]

@@ -11,6 +11,7 @@ from siggen.checks.loading import load_config
 from siggen.config import Config, inherited, parse_yaml
 from siggen.config.pairs import PairSection
 from siggen.gearbox.configured import pair_config
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.pair import gear_pair
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.rig.rig import Rig
@@ -83,15 +84,15 @@ def test_a_machine_carried_over_is_the_one_that_siggen_init_writes() -> None:
     before = Rig((18, 47), 3.0, 20.0, (30.0, 35.0), (15.0, 60.0), bores_mm=(25.0, 35.0))
     pair = PairSection(teeth=(25, 56), module_mm=4.0, face_width_mm=45.0)
     written = _parsed(rig_text(before, "before", "bench"))
-    pairs = written.gears.model_copy(update={"pairs": (pair,)})
-    own = pair_config(written.model_copy(update={"gears": pairs}), 0)
+    pairs = written.config.gears.model_copy(update={"pairs": (pair,)})
+    own = pair_config(written.with_sections(gears=pairs).config, 0)
     torque = own.operating_points[0].torque_nm.high  # type: ignore[union-attr]
     bores_mm = (2.0 * own.gears.pinion.bore_radius_mm, 2.0 * own.gears.gear.bore_radius_mm)  # type: ignore[operator]
     rig = Rig(pair.teeth, 4.0, 45.0, (30.0, 35.0), (torque / 4.0, torque), bores_mm=bores_mm)
     after = _parsed(rig_text(rig, "a", "bench"))
     edge = ".mesh.pit_edge_radius_mm"  # grows with the module here; `siggen init` leaves the preset's
     for section in ("gears", "dynamics"):
-        found, wanted = (dict(_numbers(getattr(one, section).model_dump())) for one in (own, after))
+        found, wanted = (dict(_numbers(getattr(one, section).model_dump())) for one in (own, after.config))
         found.pop(edge, None)
         wanted.pop(edge, None)
         if section == "dynamics":
@@ -109,7 +110,7 @@ def _compare_reliefs(found: dict[str, float], wanted: dict[str, float]) -> None:
     assert reliefs[0][1] == pytest.approx(reliefs[1][1], rel=0.1)  # c' of other teeth
 
 
-def _parsed(text: str) -> Config:
+def _parsed(text: str) -> SetDesign:
     return load_config(inherited(parse_yaml(text, "rig")))
 
 

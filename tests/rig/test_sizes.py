@@ -9,15 +9,15 @@ from typing import Any
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.gearbox.design import SetDesign
 from siggen.keys.number import bounds
 from tests.config.minimal import minimal
 
 STEEL_KG_M3 = 7850.0
 
 
-def sized(rated_nm: Any = 60.0, dynamics: dict[str, Any] | None = None, **changes: Any) -> Config:
+def sized(rated_nm: Any = 60.0, dynamics: dict[str, Any] | None = None, **changes: Any) -> SetDesign:
     shafts = {"pinion": {}, "gear": {}}
     own = {"model": "casing", "shafts": shafts, "rated_torque_nm": rated_nm, **(dynamics or {})}
     return load_config(minimal(**{"dynamics": own, **changes}))
@@ -26,7 +26,7 @@ def sized(rated_nm: Any = 60.0, dynamics: dict[str, Any] | None = None, **change
 def test_rotors_are_steel_discs_on_their_shafts_and_couplings_are_damped_by_a_twentieth() -> None:
     """By hand: a disc of the pitch circle around the shaft, and the shaft between its bearings."""
     config = sized()
-    dynamics, gears, shafts = config.dynamics, config.gears, config.dynamics.shafts
+    dynamics, gears, shafts = config.config.dynamics, config.config.gears, config.config.dynamics.shafts
     assert shafts is not None
     for rotor, wheel, shaft in (
         (dynamics.pinion, gears.pinion, shafts.pinion),
@@ -48,7 +48,7 @@ def test_rotors_are_steel_discs_on_their_shafts_and_couplings_are_damped_by_a_tw
 
 def test_twice_the_torque_is_twice_the_stiffness_of_couplings_and_more_of_bearings_by_a_third_power() -> None:
     thick = {"shafts": {wheel: {"diameter_mm": 30.0} for wheel in ("pinion", "gear")}}
-    one, two = (sized(rated, thick).dynamics for rated in (60.0, 120.0))
+    one, two = (sized(rated, thick).config.dynamics for rated in (60.0, 120.0))
     ratio = two.input_coupling.stiffness_nm_per_rad / one.input_coupling.stiffness_nm_per_rad  # type: ignore[operator]
     assert ratio == pytest.approx(2.0)
     stiff = [bounds(each.gear.bearing_stiffness_x_n_per_m)[0] for each in (one, two)]
@@ -57,27 +57,29 @@ def test_twice_the_torque_is_twice_the_stiffness_of_couplings_and_more_of_bearin
 
 def test_what_a_file_gives_stays_and_nothing_bends_without_shafts() -> None:
     given = {"mass_kg": 0.5, "bearing_stiffness_x_n_per_m": 3e8}
-    dynamics = sized(dynamics={"pinion": given, "load_inertia_kg_m2": 7.0, "shafts": None}).dynamics
+    dynamics = sized(dynamics={"pinion": given, "load_inertia_kg_m2": 7.0, "shafts": None}).config.dynamics
     assert (dynamics.pinion.mass_kg, dynamics.load_inertia_kg_m2, dynamics.shafts) == (0.5, 7.0, None)
     assert dynamics.pinion.bearing_stiffness_y_n_per_m == 3e8
-    assert dynamics.pinion.inertia_kg_m2 == sized().dynamics.pinion.inertia_kg_m2
+    assert dynamics.pinion.inertia_kg_m2 == sized().config.dynamics.pinion.inertia_kg_m2
 
 
 def test_helical_gears_have_the_pitch_circles_of_their_transverse_section() -> None:
     across = cos(radians(20.0))
     angle_deg = degrees(atan(tan(radians(20.0)) / across))
-    helical = sized(gears__helix_deg=20.0, states={"healthy": {}}).dynamics
-    spur = sized(gears__module_mm=3.0 / across, gears__pressure_angle_deg=angle_deg, states={"healthy": {}}).dynamics
+    helical = sized(gears__helix_deg=20.0, states={"healthy": {}}).config.dynamics
+    spur = sized(
+        gears__module_mm=3.0 / across, gears__pressure_angle_deg=angle_deg, states={"healthy": {}}
+    ).config.dynamics
     assert (helical.gear, helical.shafts) == (spur.gear, spur.shafts)
-    assert helical.gear.mass_kg > sized().dynamics.gear.mass_kg  # type: ignore[operator]
+    assert helical.gear.mass_kg > sized().config.dynamics.gear.mass_kg  # type: ignore[operator]
 
 
 def test_a_stored_configuration_holds_the_numbers_and_reads_the_same() -> None:
     config = sized()
     assert load_config(config.canonical()) == config
-    assert load_config({**config.canonical(), "operating_points": [{"speed_hz": 5.0, "torque_nm": 9.0}]}).dynamics == (
-        config.dynamics
-    )
+    assert load_config(
+        {**config.canonical(), "operating_points": [{"speed_hz": 5.0, "torque_nm": 9.0}]}
+    ).config.dynamics == (config.config.dynamics)
 
 
 @pytest.mark.parametrize("by_option", [False, True])
@@ -85,8 +87,8 @@ def test_it_takes_the_place_of_the_sizes_of_a_file_that_is_extended(tmp_path: Pa
     file = tmp_path / "mine.yaml"
     own = "" if by_option else "dynamics: {rated_torque_nm: 60}\n"
     file.write_text(f"extends: bench\nname: mine\n{own}")
-    dynamics = load_config(file, ["dynamics.rated_torque_nm=60"] if by_option else []).dynamics
-    bench = load_config("bench").dynamics
+    dynamics = load_config(file, ["dynamics.rated_torque_nm=60"] if by_option else []).config.dynamics
+    bench = load_config("bench").config.dynamics
     assert dynamics.pinion.mass_kg == pytest.approx(0.94, abs=0.1)
     assert bench.pinion.mass_kg == 1.0
     assert dynamics.shafts is not None

@@ -8,21 +8,21 @@ import numpy as np
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config
 from siggen.errors import ConfigError
+from siggen.gearbox.design import SetDesign
 from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
 
 GEAR_RATIO = 18 / 47
 
 
-def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
+def loaded(*sensors: dict[str, Any], **changes: Any) -> SetDesign:
     """Return a configuration of two gears on two shafts that do not bend; `changes` as of `minimal`."""
     plain = {"dynamics__model": "8dof", "duration_s": 0.2, "fs_hz": 25_600.0, "mesh_harmonics": 5, "specimens": 2}
     return load_config(minimal(sensors=by_name(sensors), **{**plain, **changes}))
 
 
-def record(config: Config, record_id: int = 0) -> SimulatedRecord:
+def record(config: SetDesign, record_id: int = 0) -> SimulatedRecord:
     """Return a record that was simulated."""
     (result,) = simulate(config, [record_id])
     assert isinstance(result, SimulatedRecord), result

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import planned_record
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
@@ -18,7 +17,7 @@ GEAR = {**PINION, "name": "gear", "place": "gear_bearing"}
 
 def test_both_shafts_press_on_their_seats_with_the_mesh_force_and_against_each_other() -> None:
     config = loaded(PINION, GEAR, duration_s=1.0, **OFF)
-    channels, pair = record(config).channels, draw_specimen(config, 0).pair
+    channels, pair = record(config).channels, config.gearbox(0).pair
     force, angle = 60.0 / pair.pinion.base_radius_m, pair.working_pressure_angle_rad
     along = {"vertical": np.cos(angle), "horizontal": np.sin(angle)}
     for axis, share in along.items():
@@ -29,7 +28,7 @@ def test_both_shafts_press_on_their_seats_with_the_mesh_force_and_against_each_o
 
 def test_it_holds_what_the_model_gives() -> None:
     config = loaded(PINION)
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     state = specimen_state(specimen, 0)
     response, _ = record_response(specimen, state, planned_record(config, 0))
     expected = response.bearing_force_n["pinion_bearing/vertical"].astype(np.float32)

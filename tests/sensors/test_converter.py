@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, record_schema
-from siggen.config import Config
 from siggen.gearbox.configured import state_config
+from siggen.gearbox.design import SetDesign
 from siggen.sensing.recorder import Recorder
 from siggen.sensors.converter import MOST_BITS, bits_of_noise
 from siggen.sets.drawn import set_columns
@@ -23,7 +23,7 @@ STEP = 2.0**-11
 """The largest power of two within a fifth of 0.003."""
 
 
-def config(**sensor: Any) -> Config:
+def config(**sensor: Any) -> SetDesign:
     bearing = {"name": "bearing", "bits": "noise", "noise": {"floor_m_s2": FLOOR}, **sensor}
     dynamics = {"model": "8dof", "mesh": {"law": "linear"}, "friction": {"model": "off"}}
     states = [
@@ -75,7 +75,7 @@ def test_every_record_of_a_set_has_one_step_whatever_its_state_does_to_the_noise
         len({one.labels["noise_floor_bearing_vertical_m_s2"] for one in records if isinstance(one, SimulatedRecord)})
         == 3
     )
-    assert {state_config(own, 1, state).sensors[0].converter_step for state in (0, 1)} == {STEP}
+    assert {state_config(own.config, 1, state).sensors[0].converter_step for state in (0, 1)} == {STEP}
     assert (
         float(record_schema(set_columns(own)).field("accel_bearing_vertical_m_s2").metadata[b"converter_step"]) == STEP
     )

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.gearbox.draw import draw_specimen
 from siggen.planning.plan import planned_record
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
@@ -19,7 +18,7 @@ PINION, GEAR = {**PERFECT, "name": "first"}, {**PERFECT, "name": "second", "plac
 def test_perfect_encoders_of_both_gears_hold_the_approach_of_their_flanks(variation: dict) -> None:
     config = loaded(PINION, GEAR, dynamics__model="8dof", variation=variation)
     found = record(config)
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     state, pair = specimen_state(specimen, 0), specimen.pair
     response, _ = record_response(specimen, state, planned_record(config, 0), internals=True)
     first, second = (found.channels[f"{name}_rotation"].astype(np.float64) for name in ("first", "second"))

@@ -10,9 +10,8 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config
 from siggen.errors import ConfigError
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.sets.drawn import set_columns
 from siggen.specimen.staged_structure import axis_places_m
 from tests.config.minimal import by_name
@@ -28,7 +27,7 @@ WASHER = {"kind": "bearing_force", "axes": ["vertical", "horizontal"], "range_n"
 ENCODER = {"kind": "encoder", "pulses_per_turn": 2_000, "pitch_error": 0, "eccentricity": 0}
 
 
-def loaded(*sensors: dict[str, Any], **changes: Any) -> Config:
+def loaded(*sensors: dict[str, Any], **changes: Any) -> SetDesign:
     """Return a configuration of two meshes without friction, errors of teeth or noise."""
     plain = {
         "sensors": by_name(sensors), "stages": [{**SLOW, "direction_deg": DIRECTION_DEG}], "fs_hz": 12_800.0,
@@ -44,7 +43,7 @@ def refused(*sensors: dict[str, Any], **changes: Any) -> dict[str, str]:
     return {one.path: f"{one.received}; {one.allowed}" for one in told.value.problems}
 
 
-def signals(config: Config) -> dict[str, np.ndarray]:
+def signals(config: SetDesign) -> dict[str, np.ndarray]:
     """Return the channels of the first record, which has no noise."""
     (record,) = simulate(config, [0])
     assert isinstance(record, SimulatedRecord), record
@@ -62,7 +61,7 @@ def test_bearings_carry_the_mesh_forces_of_their_shaft_and_couplings_and_encoder
     encoders = [{**ENCODER, "name": shaft.replace(".", "_"), "place": shaft} for shaft in TURNS]
     flange = {"kind": "coupling_torque", "name": "out", "place": "output_coupling", "range_nm": 1e5, "bits": None}
     config = loaded(*washers, flange, *encoders, duration_s=1.0)
-    found, specimen = signals(config), draw_specimen(config, 0)
+    found, specimen = signals(config), config.gearbox(0)
     pairs = [mesh.pair for mesh in specimen.meshes]
     sizes = TORQUE_NM / pairs[0].pinion.base_radius_m, TORQUE_NM * 47 / 18 / pairs[1].pinion.base_radius_m
     # x from the first pinion to its gear; the first pinion turns from x to y, the second one back.
@@ -92,7 +91,7 @@ def test_a_rigid_casing_moves_at_the_third_shaft_as_two_sensors_elsewhere_on_it_
     apart = 1e-3 * (np.array(corner) - other)
     x, y = (found[f"corner_{axis}"] - found[f"other_{axis}"] for axis in ("horizontal", "vertical"))
     for turned in (y / apart[0], -x / apart[1]):  # rocking from horizontal to vertical [rad/s²]
-        for place, at in axis_places_m(draw_specimen(config, 0)).items():
+        for place, at in axis_places_m(config.gearbox(0)).items():
             across, up = np.array(at) - 1e-3 * np.array(corner)
             told = {
                 "vertical": found["corner_vertical"] + across * turned,

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from siggen.gearbox.draw import draw_specimen
 from siggen.record.specimen_state import specimen_state
 from tests.sensors.runs import loaded, problems, record
 from tests.sensors.test_encoder import GEAR, OFF, PINION
@@ -30,7 +29,7 @@ def test_at_low_speed_it_is_that_of_the_mesh_at_rest(state: int) -> None:
     config = loaded(PINION, GEAR, ERROR, **SLOW)
     found = record(config, state)
     error = found.channels["error_line_of_action"].astype(np.float64)
-    static = specimen_state(draw_specimen(config, 0), state).static
+    static = specimen_state(config.gearbox(0), state).static
     angle = found.labels["start_angle_rad"] + np.pi * np.arange(config.samples) / config.fs_hz
     # pairs at rest under this torque, angle by angle, with what is missing; no loop over time
     rest = 1e6 * static.force_n(60.0) / static.stiffness_n_per_m(60.0, angle * 18 / (2 * np.pi))

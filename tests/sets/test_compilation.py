@@ -9,11 +9,11 @@ import pytest
 from numba.core.dispatcher import Dispatcher
 
 import siggen
-from siggen.config import Config
 from siggen.dataset.storage import LocalFolder
 from siggen.dynamics.time import exponential_step
 from siggen.engines.processes import ProcessEngine
 from siggen.engines.serial import SerialEngine
+from siggen.gearbox.design import SetDesign
 from siggen.gears.damage import whole_loss
 from siggen.record import compilation
 from siggen.record.compilation import is_compiled, run_part
@@ -27,11 +27,11 @@ HEALTHY = ["specimens=1", "duration_s=0.05", "states={healthy: {}}"]
 
 
 @pytest.fixture(scope="module")
-def short() -> Config:
+def short() -> SetDesign:
     return siggen.load_config("configs/quickstart.yaml", ["specimens=1", "duration_s=0.05"])
 
 
-def test_the_parts_compile_all_that_a_record_needs(short: Config, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_parts_compile_all_that_a_record_needs(short: SetDesign, monkeypatch: pytest.MonkeyPatch) -> None:
     for part in compilation_parts(short):
         run_part(part)
     later = []
@@ -54,13 +54,13 @@ def test_a_configuration_is_checked_without_what_looks_for_lost_contacts(monkeyp
     siggen.load_config("configs/quickstart.yaml")
 
 
-def test_an_empty_cache_is_told_and_a_filled_one_is_not(short: Config, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_empty_cache_is_told_and_a_filled_one_is_not(short: SetDesign, monkeypatch: pytest.MonkeyPatch) -> None:
     run_part(compilation_parts(short)[1])
-    assert is_compiled(short.dynamics.method)
-    assert (compilation_text(short.dynamics.method, 2), to_compile(short)) == ("", ())
+    assert is_compiled(short.method)
+    assert (compilation_text(short.method, 2), to_compile(short)) == ("", ())
     older = SimpleNamespace(_cache=SimpleNamespace(_cache_file=SimpleNamespace(_load_index=dict)))
     monkeypatch.setattr(exponential_step, "advance", older)
-    assert "compiling the simulation once, for all workers: about 30 s" in compilation_text(short.dynamics.method, 2)
+    assert "compiling the simulation once, for all workers: about 30 s" in compilation_text(short.method, 2)
     assert [part.name for part in to_compile(short)] == [compilation.TEETH, compilation.MOTION]
 
 

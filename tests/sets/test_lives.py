@@ -16,10 +16,8 @@ from diagnostics.records.record_classes import set_classes
 from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import ConfigError, UsageError
-from siggen.gearbox.configured import gearbox_life
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.description import class_words
 from siggen.planning.plan import plan
-from siggen.publication.dataset_info import class_names
 from siggen.sets.extension import extend
 from tests.config.minimal import by_name, minimal
 
@@ -99,8 +97,8 @@ def test_more_gearboxes_leave_those_that_exist_as_they_are(fleet: Path, tmp_path
 
 
 def test_another_schedule_changes_no_truth() -> None:
-    often = gearbox_life(load_config(lives({"interval_h": 0.3, "most": 30})), 1)
-    seldom = gearbox_life(load_config(lives()), 1)
+    often = load_config(lives({"interval_h": 0.3, "most": 30})).life(1)
+    seldom = load_config(lives()).life(1)
     assert often.course.ends == seldom.course.ends
     for age_h in (1.0, 3.0, 4.0, 5.0):
         time = often.clock.time(age_h)
@@ -134,7 +132,7 @@ def test_pits_begin_where_flanks_slide_against_their_rolling(gear: str) -> None:
     from siggen.sets.drawn import life_rows
 
     config = load_config({**lives(), "specimens": 6})
-    pair = draw_specimen(config, 0).pair
+    pair = config.gearbox(0).pair
     rows = [row for number in range(6) for row in life_rows(config, number)["pits"] if row["gear"] == gear]
     # Below the pitch point, whose arc from the base circle is R_b tan²(α)/2; from the lowest contact on.
     pitch_mm = 1e3 * 0.5 * pair.member(gear).base_radius_m * np.tan(pair.working_pressure_angle_rad) ** 2
@@ -146,7 +144,7 @@ def test_pits_begin_where_flanks_slide_against_their_rolling(gear: str) -> None:
 
 def test_a_record_after_the_end_is_refused_with_those_that_there_are(tmp_path: Path) -> None:
     (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives(), sort_keys=False))
-    count = len(gearbox_life(load_config(lives()), 0).ages_h)
+    count = len(load_config(lives()).life(0).ages_h)
     assert count < 6
     result = CliRunner().invoke(
         app, ["simulate", str(tmp_path / "lives.yaml"), "--record", "5", "--out", str(tmp_path / "r.csv")]
@@ -210,7 +208,7 @@ def test_plan_tells_cpu_hours_in_proportion_to_records(tmp_path: Path) -> None:
 
 
 def test_plan_counts_the_records_that_there_will_be(fleet: Path) -> None:
-    assert plan(load_config(lives())).count == len(siggen.open(fleet).labels())
+    assert len(plan(load_config(lives()))) == len(siggen.open(fleet).labels())
 
 
 def test_a_card_of_lives_tells_damage_and_counts_inspections_in_one_column(fleet: Path) -> None:
@@ -223,7 +221,7 @@ def test_a_card_of_lives_tells_damage_and_counts_inspections_in_one_column(fleet
 
 def test_published_classes_of_lives_hold_every_word_of_their_labels(fleet: Path) -> None:
     labels = siggen.open(fleet).labels()
-    for column, words in class_names(load_config(lives())).items():
+    for column, words in class_words(load_config(lives())).items():
         assert set(labels.column(column).to_pylist()) <= set(words)
 
 

@@ -15,20 +15,22 @@ from typer.testing import CliRunner
 import siggen.record.simulation
 from siggen.cli.app import app
 from siggen.columns.record import RecordFailure, SimulatedRecord
-from siggen.config import Config
 from siggen.dataset.manifest import PHYSICS, read_manifest
 from siggen.dataset.seal import sealed, unsealed
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import EXIT_MISMATCH, DatasetError
+from siggen.gearbox.design import SetDesign
 from siggen.sets.precision import FIRST_STEPS, MOST_STEPS, measure_precision
 from siggen.sets.verification import verify
 from tests.dataset.fake_set import copy_fake_set, fake_config, file_bytes, simulate, write_fake_set
 
 
-def simulate_off_by(config: Config, record_ids: Sequence[int], error: float) -> list[SimulatedRecord | RecordFailure]:
+def simulate_off_by(
+    config: SetDesign, record_ids: Sequence[int], error: float
+) -> list[SimulatedRecord | RecordFailure]:
     """Stand in for the physics: the reference differs from everything else by a share of the signal."""
     results = simulate(config, record_ids)
-    if config.dynamics.method == "runge_kutta":
+    if config.config.dynamics.method == "runge_kutta":
         for result in results:
             assert isinstance(result, SimulatedRecord)
             name = next(iter(result.channels))
@@ -36,25 +38,25 @@ def simulate_off_by(config: Config, record_ids: Sequence[int], error: float) -> 
     return results
 
 
-def simulate_converging(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
+def simulate_converging(config: SetDesign, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Stand in for a reference whose error falls with its steps alone, and slowly."""
-    steps = config.dynamics.steps_per_sample
+    steps = config.config.dynamics.steps_per_sample
     return simulate_off_by(config, record_ids, 1e-3 * FIRST_STEPS / steps)
 
 
-def simulate_astray(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
+def simulate_astray(config: SetDesign, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Stand in for a reference that finer steps lead away."""
-    return simulate_off_by(config, record_ids, 1e-5 * config.dynamics.steps_per_sample)
+    return simulate_off_by(config, record_ids, 1e-5 * config.config.dynamics.steps_per_sample)
 
 
-def simulate_told(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
+def simulate_told(config: SetDesign, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Stand in for records that are off, with a label that says so."""
     results = simulate_off_by(config, record_ids, 2e-3)
-    told = {"integration_error": 2.5e-3} if config.dynamics.method == "exponential" else {}
+    told = {"integration_error": 2.5e-3} if config.config.dynamics.method == "exponential" else {}
     return [replace(one, labels={**one.labels, **told}) for one in results if isinstance(one, SimulatedRecord)]
 
 
-def simulate_rounded(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
+def simulate_rounded(config: SetDesign, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
     """Stand in for a converter that makes a difference of 1e-4 one of 1e-2."""
     rounds = any(sensor.bits is not None for sensor in config.sensors)
     return simulate_off_by(config, record_ids, 1e-2 if rounds else 1e-4)

@@ -6,9 +6,8 @@ import pytest
 
 from siggen.planning.plan import planned_record
 from siggen.sets.record_cost import START_S, RecordTime, SetCost, set_cost
-from siggen.sets.trial import RECORDS, StateTrial, shortened, trial
-from tests.config.minimal import by_name
-from tests.config.minimal import config as minimal
+from siggen.sets.trial import RECORDS, TURNS, StateTrial, trial
+from tests.config.minimal import by_name, design
 from tests.dataset.fake_set import fake_config, fake_physics, simulate_none, simulate_with_failures
 
 
@@ -36,11 +35,11 @@ def test_the_interval_is_wilsons() -> None:
 
 
 def test_records_of_a_trial_are_short_and_those_of_the_set() -> None:
-    config = minimal(duration_s=2.0)
-    short = shortened(config)
-    assert 8 <= short.duration_s * config.operating_points[0].speed_hz < 8.01
-    assert planned_record(short, 3) == planned_record(config, 3)
-    assert shortened(minimal(duration_s=0.1)).duration_s == 0.1
+    whole = design(duration_s=2.0)
+    short = whole.shortened(TURNS)
+    assert 8 <= short.duration_s * whole.config.operating_points[0].speed_hz < 8.01
+    assert planned_record(short, 3) == planned_record(whole, 3)
+    assert design(duration_s=0.1).shortened(TURNS).duration_s == 0.1
 
 
 def test_a_sample_takes_gearboxes_where_states_are_few_and_states_where_they_are_many() -> None:

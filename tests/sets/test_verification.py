@@ -14,9 +14,9 @@ from typer.testing import CliRunner
 import siggen.sets.verification
 from siggen.cli.app import app
 from siggen.columns.record import RecordFailure, SimulatedRecord
-from siggen.config import Config
 from siggen.dataset.environment import environment
 from siggen.errors import EXIT_MISMATCH, DatasetError
+from siggen.gearbox.design import SetDesign
 from siggen.sets.verification import CLOSE, EXACT, verify
 from tests.dataset.fake_set import FAKE_FILES, STEP_M_S2, simulate, verify_fake_set, write_fake_set
 
@@ -97,7 +97,7 @@ def test_a_folder_that_is_no_finished_set_is_no_mismatch_but_an_error(tmp_path: 
         verify(tmp_path / "nothing")
 
 
-def shifted(config: Config, ids: Sequence[int], by_m_s2: float) -> list[SimulatedRecord | RecordFailure]:
+def shifted(config: SetDesign, ids: Sequence[int], by_m_s2: float) -> list[SimulatedRecord | RecordFailure]:
     results = []
     for record in simulate(config, ids):
         assert isinstance(record, SimulatedRecord)
@@ -141,7 +141,7 @@ def test_elsewhere_one_step_of_the_converter_is_allowed_and_two_are_not(
 def test_labels_are_compared_too(
     reference: Path, monkeypatch: pytest.MonkeyPatch, label: str, value: object, allowed_elsewhere: bool
 ) -> None:
-    def changed(config: Config, ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
+    def changed(config: SetDesign, ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
         return [replace(record, labels={**record.labels, label: value}) for record in simulate(config, ids)]
 
     assert len(verify_fake_set(reference, 2, simulation=changed).mismatches) == 2
@@ -150,7 +150,7 @@ def test_labels_are_compared_too(
 
 
 def test_a_record_that_now_fails_is_a_mismatch(reference: Path) -> None:
-    def fails(config: Config, ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
+    def fails(config: SetDesign, ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
         return [RecordFailure(i, "diverged", "why not") for i in ids]
 
     found = verify_fake_set(reference, 1, simulation=fails)

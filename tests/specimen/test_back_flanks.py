@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from siggen.arrays import FloatArray
-from siggen.config import Config, parse
+from siggen.config import parse
 from siggen.dynamics.structure.drivetrain import Modes
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.specimen import OperatingPoint
 from siggen.record.specimen_state import SpecimenState, specimen_state
 from siggen.specimen.motion import specimen_motion
@@ -24,7 +24,7 @@ HOUSED = {"model": "casing", "shafts": {"pinion": SHAFT, "gear": SHAFT}}
 """In a box of plates, on shafts that tilt. Round equal gears and bearings the box is its own mirror image too."""
 
 
-def own_mirror(friction: str = "off", *, housed: bool = False) -> Config:
+def own_mirror(friction: str = "off", *, housed: bool = False) -> SetDesign:
     """Return a gearbox of two equal gears on equal shafts: with the gear in front it is itself."""
     dynamics = {
         "model": "8dof",
@@ -48,16 +48,16 @@ def own_mirror(friction: str = "off", *, housed: bool = False) -> Config:
         )
     )
     assert parsed.config is not None, [str(problem) for problem in parsed.problems]
-    return parsed.config
+    return SetDesign(parsed.config)
 
 
-def state_of(config: Config, state_id: int = 0) -> SpecimenState:
-    return specimen_state(draw_specimen(config, 0), state_id)
+def state_of(config: SetDesign, state_id: int = 0) -> SpecimenState:
+    return specimen_state(config.gearbox(0), state_id)
 
 
-def moved(config: Config, state: SpecimenState, torque_nm: float, internals: bool = False) -> FloatArray:
+def moved(config: SetDesign, state: SpecimenState, torque_nm: float, internals: bool = False) -> FloatArray:
     """Return states (k, 2n) from rest, or internals (k, names), with the mesh law at the same angles."""
-    law = draw_specimen(config, 0).law
+    law = config.gearbox(0).law
     motion = specimen_motion(law, state.mesh, OperatingPoint(30.0, torque_nm), STEP_S)
     pitches = 0.4 + 25 * 30.0 * STEP_S * np.arange(STEPS + 1)
     states = np.empty((STEPS + 1, 2 * len(motion.structure.coordinates)))
@@ -66,7 +66,7 @@ def moved(config: Config, state: SpecimenState, torque_nm: float, internals: boo
     return motion.internals(states, pitches) if internals else states
 
 
-def mirror(config: Config, state: SpecimenState) -> FloatArray:
+def mirror(config: SetDesign, state: SpecimenState) -> FloatArray:
     """Return (n, n): what both sides' exchange makes of displacements, by a mirror across the centre line."""
     stage = state.mesh.structure
     other = {"motor": "load", "load": "motor", "pinion": "gear", "gear": "pinion"}
@@ -84,7 +84,7 @@ def mirror(config: Config, state: SpecimenState) -> FloatArray:
                 to = names.index(f"{kind[:-1]}{axis}_{other[side]}")
                 found[to, i] = reflected[j, "xy".index(kind[-1])]
     if "eta_1" in names:
-        modes = specimen_body(draw_specimen(config, 0)).body
+        modes = specimen_body(config.gearbox(0)).body
         for name, sign in zip(modes.coordinates, signs_in_mirror(modes), strict=True):
             found[names.index(name), names.index(name)] = sign
     return found
@@ -141,7 +141,7 @@ def test_friction_brakes_back_flanks_as_it_brakes_drive_flanks():
 def test_both_torques_push_the_gears_apart_and_turn_them_against_each_other():
     config = own_mirror()
     state = state_of(config)
-    law = draw_specimen(config, 0).law
+    law = config.gearbox(0).law
     for torque_nm in (40.0, -40.0):
         motion = specimen_motion(law, state.mesh, OperatingPoint(30.0, torque_nm), STEP_S)
         at = dict(zip(motion.structure.coordinates, motion.equations.static_deflection, strict=True))
@@ -156,7 +156,7 @@ def test_both_torques_push_the_gears_apart_and_turn_them_against_each_other():
 def test_internals_of_any_torque_are_told_for_the_drive_flanks(torque_nm: float):
     config = own_mirror()
     state = state_of(config)
-    law = draw_specimen(config, 0).law
+    law = config.gearbox(0).law
     motion = specimen_motion(law, state.mesh, OperatingPoint(30.0, torque_nm), STEP_S)
     found = dict(zip(motion.internal_names, moved(config, state, torque_nm, internals=True).T, strict=True))
     assert np.isfinite(found["mesh_force_n"]).all()

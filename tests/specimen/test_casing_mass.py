@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.config import Config
 from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.structure import Structure
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.housing import Block
 from siggen.specimen.structure import structure
 from tests.config.minimal import by_name, minimal
@@ -19,14 +18,14 @@ LID = {"name": "lid", "place": "casing", "axes": ["vertical"], "position_mm": [6
 MESH = MeanMesh(3e8, 800.0)
 
 
-def loaded(mass_kg: float) -> Config:
+def loaded(mass_kg: float) -> SetDesign:
     housing = {"kind": "rigid", "mass_kg": mass_kg, "inertia_kg_m2": None}
     return load_config(minimal(sensors=by_name([LID]), housing=housing))
 
 
 def assembled(mass_kg: float) -> Structure:
     config = loaded(mass_kg)
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     return locked_load(structure(specimen))
 
 
@@ -74,7 +73,7 @@ def test_what_a_force_puts_in_is_what_the_dampers_take(mass_kg: float) -> None:
 def test_far_above_its_bolts_a_casing_moves_and_turns_as_a_free_body_of_its_mass() -> None:
     """At its centre of gravity a = F/m; at the height h a further h²/J, J = m (1.15 a)², for a horizontal force."""
     config = loaded(12.0)
-    specimen, height_m = draw_specimen(config, 0), 0.05
+    specimen, height_m = config.gearbox(0), 0.05
     pair = specimen.pair
     stage = locked_load(structure(specimen))
     direction = stage.motions["casing_lid/horizontal"]
@@ -96,7 +95,7 @@ def test_a_file_that_writes_the_default_values_out_has_the_identity_of_one_witho
 
 def test_a_casing_of_twice_the_extent_turns_four_times_as_hard() -> None:
     """The radius of gyration follows the distance of the axes; 1.15 of it is a box of even wall round both gears."""
-    block = draw_specimen(loaded(20.0), 0).housing
+    block = loaded(20.0).gearbox(0).housing
     assert isinstance(block, Block)
     small, large = (block.casing(extent_m) for extent_m in (0.1, 0.2))
     assert large.inertia_kg_m2 == pytest.approx(4.0 * small.inertia_kg_m2)

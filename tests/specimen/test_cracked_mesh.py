@@ -10,7 +10,6 @@ import pytest
 
 from siggen.dynamics.mesh.pair_forces import static_approach_m
 from siggen.dynamics.mesh.static_stiffness import secant_stiffness_n_per_m
-from siggen.gearbox.draw import draw_specimen
 from siggen.record.specimen_state import SpecimenState, specimen_state
 from tests.faults.test_damage import config_with
 
@@ -21,7 +20,7 @@ TOOTH, FORCE_N = 3, 2400.0
 def cracked(gear: str = "pinion", damage: str = "all") -> SpecimenState:
     crack = {"kind": "crack", "depth_share": 0.4, "gear": gear, "teeth": [TOOTH]}
     config = config_with(crack)
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     law = replace(specimen.law, section_loss=damage == "all")
     return specimen_state(replace(specimen, law=law), 1)
 

@@ -6,7 +6,6 @@ import numpy as np
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.gearbox.draw import draw_specimen
 from siggen.views.natural_modes import specimen_modes
 from tests.config.minimal import minimal
 from tests.simulated import internals_table, simulate
@@ -37,7 +36,7 @@ def test_its_teeth_rub_as_lubricated_ones_do() -> None:
 
 def test_all_supports_swing_and_the_lowest_modes_of_the_housing() -> None:
     # As stiff as the plain sum of pairs: the softer the mesh, the more the supports count.
-    found = specimen_modes(draw_specimen(load_config(minimal(stiffness__coupling="none")), 0))
+    found = specimen_modes(load_config(minimal(stiffness__coupling="none")).gearbox(0))
     assert 8 + 6 <= len(found.coordinates) <= 8 + 9
     assert (np.diff(found.modes.frequency_hz) > 0.0).all()
     inertia = dict(zip(found.coordinates, np.diag(found.mass), strict=True))
@@ -57,6 +56,6 @@ def test_all_supports_swing_and_the_lowest_modes_of_the_housing() -> None:
 def test_the_linear_law_alone_has_no_friction() -> None:
     # friction.model: auto follows the law, so that one key is enough to go back to mesh stiffness times approach
     config = load_config(minimal(duration_s=0.05, dynamics__mesh__law="linear"))
-    assert config.dynamics.method == "product"
+    assert config.config.dynamics.method == "product"
     table = internals_table(config, 0)
     assert "friction_force_n" not in table.column_names

@@ -9,9 +9,8 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config
 from siggen.dynamics.drive.drive import Drive
-from siggen.gearbox.draw import draw_operating_point, draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.planning.plan import planned_record
 from siggen.sets.drawn import simulated
 from siggen.specimen.drive import RecordDrive, record_drive
@@ -27,30 +26,30 @@ VARYING = [
 FORCES = ["dynamics.unbalance.grade_mm_s=6.3"]
 
 
-def load(*overrides: str) -> Config:
+def load(*overrides: str) -> SetDesign:
     return load_config("tests/configs/linear_pits.yaml", [*SMALL, *overrides])
 
 
-def drive_of(config: Config, record_id: int) -> RecordDrive:
+def drive_of(config: SetDesign, record_id: int) -> RecordDrive:
     record = planned_record(config, record_id)
-    specimen = draw_specimen(config, record.specimen_id)
+    specimen = config.gearbox(record.specimen_id)
     return record_drive(specimen, structure(specimen), record)
 
 
 @pytest.fixture(scope="module")
-def varying() -> Config:
+def varying() -> SetDesign:
     return load(*VARYING, *FORCES)
 
 
 @pytest.fixture(scope="module")
-def record(varying: Config) -> SimulatedRecord:
+def record(varying: SetDesign) -> SimulatedRecord:
     (found,) = simulate(varying, [2])
     assert isinstance(found, SimulatedRecord)
     return found
 
 
 def test_a_varying_record_is_a_function_of_configuration_and_index_alone(
-    varying: Config, record: SimulatedRecord
+    varying: SetDesign, record: SimulatedRecord
 ) -> None:
     again = list(simulated(varying, [0, 2]))[1]
     assert isinstance(again, SimulatedRecord)
@@ -58,7 +57,7 @@ def test_a_varying_record_is_a_function_of_configuration_and_index_alone(
     assert all(np.array_equal(again.channels[name], record.channels[name]) for name in record.channels)
 
 
-def test_labels_say_what_speed_and_torque_did(varying: Config, record: SimulatedRecord) -> None:
+def test_labels_say_what_speed_and_torque_did(varying: SetDesign, record: SimulatedRecord) -> None:
     labels = record.labels
     slipping = 1.0 - 0.03 * labels["torque_nm"] / 60.0
     # The slow part of 0.3 % and the ripple move the mean of 0.2 s.
@@ -73,7 +72,7 @@ def test_labels_say_what_speed_and_torque_did(varying: Config, record: Simulated
     assert 0.0 < labels["torque_std_nm"] < 0.2 * expected
 
 
-def test_tacho_times_are_whole_turns_of_the_varying_angle(varying: Config, record: SimulatedRecord) -> None:
+def test_tacho_times_are_whole_turns_of_the_varying_angle(varying: SetDesign, record: SimulatedRecord) -> None:
     rotation = drive_of(varying, 2).rotation
     turns = rotation.angle_rad(record.tacho_s) / (2.0 * math.pi)
     assert np.abs(turns - np.round(turns)).max() < 1e-9
@@ -83,10 +82,10 @@ def test_tacho_times_are_whole_turns_of_the_varying_angle(varying: Config, recor
 
 def test_states_share_the_numbers_but_not_the_course() -> None:
     config = load("variation.speed.random_rms=[0.001, 0.005]")
-    points = len(config.operating_points) * config.repeats
+    points = len(config.config.operating_points) * config.repeats
     first, second = planned_record(config, 0), planned_record(config, points)
     assert (first.state_id, second.state_id) == (0, 1)
-    point, again, of_another = (draw_operating_point(config, specimen, 0).variation for specimen in (0, 0, 1))
+    point, again, of_another = (config.drawn_points(specimen)[0].variation for specimen in (0, 0, 1))
     assert point is not None
     assert point == again != of_another
     time = np.linspace(0.0, 0.2, 50)
@@ -103,9 +102,9 @@ def test_unbalance_belongs_to_the_specimen() -> None:
         assert drive.excitation is not None
         return drive.excitation.inputs(time, Drive(point.speed_hz, 0.5))
 
-    point = draw_operating_point(config, 0, 0)
-    first, second = inputs(0), inputs(config.repeats * len(config.operating_points))
+    point = config.drawn_points(0)[0]
+    first, second = inputs(0), inputs(config.repeats * len(config.config.operating_points))
     np.testing.assert_array_equal(first, second)
-    mass = structure(draw_specimen(config, 0)).mass[1, 1]
+    mass = structure(config.gearbox(0)).mass[1, 1]
     expected = mass * 6.3e-3 * (2.0 * math.pi * point.speed_hz) ** 2 / (2.0 * math.pi * 50.0)
     assert np.hypot(first[:, 0], first[:, 1]) == pytest.approx(expected, rel=1e-9)

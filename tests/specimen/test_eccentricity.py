@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.config import Config
 from siggen.errors import ConfigError
 from siggen.gearbox.configured import state_config
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.tooth_errors import SpecimenErrors
 from tests.config.minimal import by_name
 from tests.sensors.runs import loaded, record
@@ -19,14 +18,14 @@ from tests.sensors.test_transmission_error import ERROR
 STATE = "off: {{fault: eccentricity, severity: severe, changes: {{dynamics.{}.eccentricity_um: {{add: {}}}}}}}"
 
 
-def config(which: str, added_um: float, manufacture: str = "{accuracy_class: 6}") -> Config:
+def config(which: str, added_um: float, manufacture: str = "{accuracy_class: 6}") -> SetDesign:
     states = f"states={{healthy: {{}}, {STATE.format(which, added_um)}}}"
     return load_config("tests/configs/casing.yaml", ["specimens=2", f"manufacture={manufacture}", states])
 
 
-def errors(chosen: Config, state: int) -> SpecimenErrors:
-    own = state_config(chosen, 0, state)
-    teeth = draw_specimen(own, 0).meshes[0].teeth
+def errors(chosen: SetDesign, state: int) -> SpecimenErrors:
+    own = state_config(chosen.config, 0, state)
+    teeth = SetDesign(own).gearbox(0).meshes[0].teeth
     found = teeth.errors(teeth.drawn_for(state))
     assert found is not None
     return found

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config, parse
-from siggen.gearbox.draw import draw_specimen
+from siggen.config import parse
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.tooth_errors import SpecimenErrors
 from siggen.record.specimen_state import specimen_state
 from tests.simulated import label_names, simulate
@@ -20,7 +20,7 @@ from tests.simulated import label_names, simulate
 SHORT = ["specimens=20", "duration_s=0.1", "operating_points=[{speed_hz: 30.0, torque_nm: 30.0}]"]
 
 
-def made(*overrides: str) -> Config:
+def made(*overrides: str) -> SetDesign:
     return load_config("tests/configs/casing.yaml", [*SHORT, *overrides])
 
 
@@ -28,8 +28,8 @@ CLASS_6 = made("manufacture={accuracy_class: 6}")
 PER_STATE = made("manufacture={accuracy_class: 6, draw: state}")
 
 
-def errors_of(config: Config, specimen: int = 0, state: int = 0) -> SpecimenErrors:
-    teeth = draw_specimen(config, specimen).meshes[0].teeth
+def errors_of(config: SetDesign, specimen: int = 0, state: int = 0) -> SpecimenErrors:
+    teeth = config.gearbox(specimen).meshes[0].teeth
     found = teeth.errors(teeth.drawn_for(state))
     assert found is not None
     return found
@@ -68,13 +68,13 @@ def test_classes_of_a_choice_all_occur_and_gears_draw_their_own() -> None:
     assert any(one.pinion.accuracy_class != one.gear.accuracy_class for one in found)
 
 
-def parsed(raw: dict[str, Any]) -> Config:
+def parsed(raw: dict[str, Any]) -> SetDesign:
     config = parse(raw).config
     assert config is not None
-    return config
+    return SetDesign(config)
 
 
-def misaligned(value: object) -> Config:
+def misaligned(value: object) -> SetDesign:
     section = {"accuracy_class": 6, "lead_misalignment_um": value}
     return parsed({**CLASS_6.canonical(), "manufacture": section})
 
@@ -101,7 +101,7 @@ def test_misalignment_by_the_standard_stays_within_the_helix_slopes_of_both_gear
     assert ratio.std() == pytest.approx(1.0 / np.sqrt(6.0), rel=0.21)
 
 
-def records(config: Config, ids: list[int]) -> list[SimulatedRecord]:
+def records(config: SetDesign, ids: list[int]) -> list[SimulatedRecord]:
     found = simulate(config, ids)
     assert all(isinstance(one, SimulatedRecord) for one in found), found
     return found  # type: ignore[return-value]
@@ -126,7 +126,7 @@ def test_no_share_of_the_tolerance_gives_the_bytes_of_perfect_gears() -> None:
         assert zero.channels[name].tobytes() == signal.tobytes()
 
 
-def with_helix(config: Config, **keys: object) -> Config:
+def with_helix(config: SetDesign, **keys: object) -> SetDesign:
     section = {"accuracy_class": 6, **keys}
     return parsed({**config.canonical(), "manufacture": section})
 
@@ -152,7 +152,7 @@ def test_a_crowned_pair_at_rest_gives_way_by_up_to_the_mean_of_its_parabola() ->
     crown, approach = 8e-6, {}
     for crowning in (8.0, 0.0):
         config = with_helix(CLASS_6, tolerance_share=0.0, crowning_um=crowning, crowning_driven_um=0.0)
-        state = specimen_state(draw_specimen(config, 0), 0)
+        state = specimen_state(config.gearbox(0), 0)
         pair = state.pair
         alone = np.array([0.5 * (pair.contact_end_m - pair.contact_start_m) / pair.base_pitch_m])
         approach[crowning] = np.array(

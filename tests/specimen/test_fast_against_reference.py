@@ -12,12 +12,11 @@ from hypothesis import strategies as st
 
 import siggen
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.planning.plan import planned_record
 from siggen.record.specimen_state import SpecimenState, specimen_state
 from siggen.sets.drawn import set_columns
-from siggen.sets.precision import record_error, reference_config, unrounded
+from siggen.sets.precision import record_error
 from siggen.specimen.drive import record_drive
 from siggen.specimen.motion import specimen_motion
 from siggen.specimen.step_choice import stepped_motion
@@ -31,18 +30,18 @@ WINDOW_S, STARTING_S = 0.04, 0.01
 CHANNEL_S, CHANNEL_STEPS = 0.15, 32
 
 
-def drawn_record(preset: str, number: int, duration_s: float = WINDOW_S) -> tuple[Config, int]:
+def drawn_record(preset: str, number: int, duration_s: float = WINDOW_S) -> tuple[SetDesign, int]:
     """Return a preset and the id of one of its records, drawn by name and number."""
     config = siggen.load_config(CONFIGS / f"{preset}.yaml", [f"duration_s={duration_s}"])
     return config, Random(f"{preset} {number}").randrange(config.specimens * config.records_per_specimen)
 
 
 def accelerations(
-    config: Config, record_id: int, state: SpecimenState, integrator: str, steps: int, stride: int = 1
+    config: SetDesign, record_id: int, state: SpecimenState, integrator: str, steps: int, stride: int = 1
 ) -> np.ndarray:
     """Return the accelerations (samples, motions) of a record from the static start, means over two samples."""
     record = planned_record(config, record_id)
-    specimen = draw_specimen(config, record.specimen_id)
+    specimen = config.gearbox(record.specimen_id)
     point, driven = specimen.points[record.operating_point_id], record_drive(specimen, state.mesh.structure, record)
     rate_hz = config.fs_hz * steps
     law = specimen.law.by_reference() if integrator == "runge_kutta" else specimen.law
@@ -64,7 +63,7 @@ def errors(preset: str, number: int) -> np.ndarray:
     """Return the relative rms error of every motion with the steps that the record takes."""
     config, record_id = drawn_record(preset, number)
     record = planned_record(config, record_id)
-    specimen = draw_specimen(config, record.specimen_id)
+    specimen = config.gearbox(record.specimen_id)
     assert specimen.law.method == "exponential"
     state = specimen_state(specimen, record.state_id)
     point, driven = specimen.points[record.operating_point_id], record_drive(specimen, state.mesh.structure, record)
@@ -80,7 +79,7 @@ def test_a_random_record_of_every_preset_meets_the_stated_error(preset: str) -> 
 
 
 def test_every_preset_that_takes_the_exponential_integrator_is_drawn_from() -> None:
-    methods = {path.stem: siggen.load_config(path).dynamics.method for path in CONFIGS.glob("*.yaml")}
+    methods = {path.stem: siggen.load_config(path).config.dynamics.method for path in CONFIGS.glob("*.yaml")}
     # industrial is bench, fleet quickstart; helical and planetary have references of their own
     others = {"industrial", "fleet", "helical", "planetary"}
     assert {name for name, method in methods.items() if method == "exponential"} == {*PRESETS, *others}
@@ -94,14 +93,14 @@ def test_the_worst_delivered_channel_of_random_records_meets_the_tolerance(prese
     config, record_id = drawn_record(preset, number, CHANNEL_S)
     error = channel_error(config, record_id)
     event(f"record {record_id}: {error:.1e}")
-    assert 0.0 < error <= config.dynamics.integration_tolerance
+    assert 0.0 < error <= config.config.dynamics.integration_tolerance
 
 
 @pytest.mark.slow
 def test_the_worst_delivered_channel_of_the_hardest_record_of_quickstart_meets_its_tolerance() -> None:
     """Record 56 was the worst of 24 with one step per sample, 1.15e-3; what is promised is the worst channel."""
     config = siggen.load_config(CONFIGS / "quickstart.yaml", ["duration_s=0.5"])
-    assert 0.0 < channel_error(config, 56) <= config.dynamics.integration_tolerance
+    assert 0.0 < channel_error(config, 56) <= config.config.dynamics.integration_tolerance
 
 
 def test_a_turn_of_sliding_that_vibration_moves_from_the_pitch_point_is_met_in_short_steps() -> None:
@@ -110,18 +109,18 @@ def test_a_turn_of_sliding_that_vibration_moves_from_the_pitch_point_is_met_in_s
     Half of the tolerance: short steps leave a fifth of that.
     """
     config = siggen.load_config(CONFIGS / "paper_b.yaml", [f"duration_s={CHANNEL_S}"])
-    assert 0.0 < channel_error(config, 106) <= 0.5 * config.dynamics.integration_tolerance
+    assert 0.0 < channel_error(config, 106) <= 0.5 * config.config.dynamics.integration_tolerance
 
 
-def channel_error(config: Config, record_id: int) -> float:
+def channel_error(config: SetDesign, record_id: int) -> float:
     """Return the relative rms error of the worst channel as it reaches its converter."""
-    unrounding = unrounded(config)
+    unrounding = config.unrounded()
     delivered = delivered_channels(unrounding, record_id)
-    fine = delivered_channels(reference_config(unrounding, CHANNEL_STEPS), record_id)
+    fine = delivered_channels(unrounding.by_reference(CHANNEL_STEPS), record_id)
     return record_error(set_columns(config).channels, delivered, fine)
 
 
-def delivered_channels(config: Config, record_id: int) -> dict[str, np.ndarray]:
+def delivered_channels(config: SetDesign, record_id: int) -> dict[str, np.ndarray]:
     """Return what reaches the converters in a record, by column."""
     (record,) = simulate(config, [record_id])
     assert isinstance(record, SimulatedRecord)

@@ -9,9 +9,8 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config
 from siggen.gearbox import flank_waves
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.flank_waves import CLAMPING, SpecimenWaves
 from tests.simulated import label_names, simulate
 
@@ -28,17 +27,17 @@ class Fixed(NamedTuple):
 SHORT = ["specimens=20", "operating_points=[{speed_hz: 30.0, torque_nm: 30.0}]"]
 
 
-def made(waves: str = "on", *overrides: str) -> Config:
+def made(waves: str = "on", *overrides: str) -> SetDesign:
     section = f"manufacture={{accuracy_class: 6, tolerance_share: 0, flank_waves: {waves}}}"
     return load_config("tests/configs/casing.yaml", [*SHORT, section, *overrides])
 
 
-def waves_of(config: Config, specimen: int, state: int) -> SpecimenWaves | None:
-    teeth = draw_specimen(config, specimen).meshes[0].teeth
+def waves_of(config: SetDesign, specimen: int, state: int) -> SpecimenWaves | None:
+    teeth = config.gearbox(specimen).meshes[0].teeth
     return teeth.waves(teeth.drawn_for(state))
 
 
-def record(config: Config) -> SimulatedRecord:
+def record(config: SetDesign) -> SimulatedRecord:
     found = simulate(config, [0])[0]
     assert isinstance(found, SimulatedRecord), found
     return found
@@ -62,7 +61,7 @@ def test_ghosts_are_as_many_as_poisson_says_and_fall_with_their_number(monkeypat
     # fewer waves than are drawn, too: those are not larger than what is drawn
     monkeypatch.setattr(flank_waves, "ORDER_OVER_TEETH", flank_waves.LogUniform(low=1.0, high=15.0))
     config = made()
-    pair = draw_specimen(config, 0).pair
+    pair = config.gearbox(0).pair
     found = [waves_of(config, specimen, 0) for specimen in range(150)]
     counts = [drawn.ghosts["gear"] for drawn in found if drawn is not None]
     # 150 of mean and variance 2: 0.12

@@ -8,6 +8,7 @@ from siggen.checks.loading import load_config
 from siggen.checks.physical_problems import physical_problems
 from siggen.config import parse
 from siggen.errors import ConfigError
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.pair import gear_pair, stiffness_options
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.gears.stiffness.mesh_tables import mesh_tables
@@ -55,7 +56,7 @@ def test_what_load_lets_pass_gives_tables_and_what_it_refuses_does_not():
 
 
 def notes(**changes: object) -> tuple[str, ...]:
-    return PossibleGearbox(config(**changes)).stiffness_notes
+    return SetDesign(config(**changes)).possible.stiffness_notes
 
 
 def test_notes_look_at_both_ends_of_a_distribution():

@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.config import Config
 from siggen.dynamics.housing.box import Material
 from siggen.dynamics.structure.forced_motion import ForcedMotion, MeanMesh, forced_motion
 from siggen.dynamics.structure.gear_stage import Base
 from siggen.dynamics.structure.load_lock import locked_load
 from siggen.dynamics.structure.makers import on_base
 from siggen.dynamics.structure.structure import Structure
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.housing import Plates
 from siggen.gearbox.mode_table import seats_of
 from siggen.names import PAIR
@@ -34,8 +33,8 @@ DRAWN = range(10)
 SHARES = ("lid", "floor", "boss", "boss_thickness", "bolt_inset", "bolt_n_per_m", "overhang_m", "rib_height")
 
 
-def housing_of(config: Config, specimen_id: int) -> SpecimenHousing:
-    housing = specimen_housing(draw_specimen(config, specimen_id))
+def housing_of(config: SetDesign, specimen_id: int) -> SpecimenHousing:
+    housing = specimen_housing(config.gearbox(specimen_id))
     assert housing is not None
     return housing
 
@@ -58,7 +57,7 @@ def stiff(monkeypatch) -> None:
 @pytest.mark.parametrize("share", [1.0, 0.1])
 def test_a_base_that_moves_slowly_takes_the_box_along_without_force(share: float) -> None:
     config = load_config("quickstart", [f"housing.loose_foot_share={share}"])
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     base = Base(300.0, 20.0, (20.0, 20.0, 20.0), 0.1)
     stage = linear_structure(on_base(linear_train(specimen), base))
     p, names = stage.mesh.vector, stage.coordinates
@@ -81,7 +80,7 @@ def test_a_base_that_moves_slowly_takes_the_box_along_without_force(share: float
 def test_what_a_sensor_sees_of_bearing_forces_is_the_sum_over_all_modes() -> None:
     """The instrument's rows against numpy at some frequencies of its grid."""
     config = load_config("quickstart", ["sensors.lid.cross_axis=0", "sensors.side.cross_axis=0"])
-    housing, instrument = housed(3), specimen_instrument(draw_specimen(config, 3))
+    housing, instrument = housed(3), specimen_instrument(config.gearbox(3))
     omega = 2.0 * np.pi * np.array([1, 7, 50, 333, 1000, 2500]) * config.fs_hz / instrument.length
     modes, forces = housing.modes, [housing.seats[name] for name in INPUTS]
     own, ratio = 2.0 * np.pi * modes.frequency_hz[:, None], housing.damping_ratio[:, None]
@@ -104,7 +103,7 @@ def test_below_250_hz_a_place_moves_about_as_on_a_rigid_casing(specimen_id: int)
     Vertical and horizontal together: a place near the axis of rocking hardly moves along one of them.
     """
     config = load_config("quickstart", ["dynamics.shafts=null"])
-    specimen = draw_specimen(config, specimen_id)
+    specimen = config.gearbox(specimen_id)
     housing = housing_of(config, specimen_id)
     hz = np.arange(20.0, 250.0, 1.0)
     pressed = in_mesh(locked_load(structure(specimen)), hz).bearing_force
@@ -137,7 +136,7 @@ def test_gearboxes_have_housings_of_their_own_and_states_share_one() -> None:
 def test_a_number_that_is_given_is_that_of_every_gearbox_and_moves_no_other() -> None:
     given = load_config("quickstart", ["housing.wall_mm=12", "housing.material=steel"])
     for specimen_id in range(3):
-        free, held = draw_specimen(CONFIG, specimen_id).housing, draw_specimen(given, specimen_id).housing
+        free, held = CONFIG.gearbox(specimen_id).housing, given.gearbox(specimen_id).housing
         assert isinstance(free, Plates)
         assert isinstance(held, Plates)
         assert [getattr(held.proportions, name) for name in SHARES] == [

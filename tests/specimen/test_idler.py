@@ -10,10 +10,9 @@ import pytest
 
 from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
-from siggen.config import Config
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.pair_motion import PairMotion
-from siggen.gearbox.draw import draw_operating_point, draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.gears.errors.gear_errors import eccentric_m
 from siggen.record.specimen_state import specimen_state
@@ -27,10 +26,10 @@ SMOOTH = {"dynamics": {"model": "8dof", "friction": {"model": "off"}, "mesh_damp
 
 
 @cache
-def machine(state: int = 0, **changes: object) -> tuple[Config, Specimen, SpecimenMesh, OperatingPoint]:
+def machine(state: int = 0, **changes: object) -> tuple[SetDesign, Specimen, SpecimenMesh, OperatingPoint]:
     config = load_config(idler(**SMOOTH, **changes))
-    specimen = draw_specimen(config, 0)
-    return config, specimen, specimen_state(specimen, state).mesh, draw_operating_point(config, 0, 0)
+    specimen = config.gearbox(0)
+    return config, specimen, specimen_state(specimen, state).mesh, config.drawn_points(0)[0]
 
 
 def motion_of(mesh: SpecimenMesh) -> PairMotion:
@@ -56,7 +55,7 @@ def rms(values: FloatArray) -> float:
 def test_no_mesh_notices_that_the_whole_machine_is_moved_and_turned_as_one_body(direction_deg: float) -> None:
     """Turned about the idler by ω, the gear at d moves by ω x d; shafts that turn back count their rotation so."""
     config = load_config(idler(machine=with_idler("meshes", 1, direction_deg=direction_deg)))
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     found = structure(specimen)
     names, place = found.coordinates, np.radians(direction_deg)
     to_a, to_c = (-0.045, 0.0), (0.062 * np.cos(place), 0.062 * np.sin(place))
@@ -131,7 +130,7 @@ def missing_m(made: MeshTeeth, which: str, pitches: FloatArray) -> FloatArray:
 def test_an_eccentric_idler_stands_back_from_both_gears_as_the_structure_says_of_its_shift() -> None:
     """The shift is found from the first mesh by the vectors of the motion, turned, and told to the second one's."""
     config = load_config(idler(**SMOOTH, manufacture={"accuracy_class": 6}))
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     made, found = all_teeth(specimen), structure(specimen)
     mesh = specimen_state(specimen, 0).mesh
     rows = [found.coordinates.index(f"{axis}_b") for axis in "xy"]

@@ -9,7 +9,6 @@ import pytest
 
 import siggen
 from siggen.checks.loading import load_config
-from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.mode_table import seats_of
 from siggen.names import PAIR
 from siggen.sensing.inputs import FORCE, Input
@@ -23,7 +22,7 @@ INPUTS = seats_of(PAIR)
 def test_a_force_that_also_comes_through_a_path_counts_twice() -> None:
     shown, bins = Input(FORCE, INPUTS[0]), 9
     channel = ChannelInstrument(
-        draw_specimen(load_config("tests/configs/ideal.yaml"), 0).channels[0], seen={shown: 3.0},
+        load_config("tests/configs/ideal.yaml").gearbox(0).channels[0], seen={shown: 3.0},
         accelerance=np.full((len(INPUTS), bins), 2.0 + 0.0j), sensor_response=None,
         path_modes=0, path_rms_m_s2_per_n=0.0, forces=INPUTS,
     )  # fmt: skip
@@ -43,4 +42,4 @@ def test_what_the_model_does_not_give_is_refused_by_the_name_of_the_sensor(monke
 
 def test_nothing_settles_where_bearings_are_seats_and_no_path_was_measured() -> None:
     config = load_config(minimal(dynamics__model="8dof"))
-    assert settle_s(draw_specimen(config, 0)) == 0.0
+    assert settle_s(config.gearbox(0)) == 0.0

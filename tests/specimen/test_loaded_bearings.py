@@ -9,11 +9,9 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.checks.shaft_notes import shaft_notes
-from siggen.config import Config
 from siggen.dynamics.structure.structure import on_back_flanks
 from siggen.errors import ConfigError
-from siggen.gearbox.draw import draw_operating_point, draw_specimen
-from siggen.gearbox.possible import PossibleGearbox
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.specimen import OperatingPoint
 from siggen.specimen.bearing_spalls import mean_force_n
 from siggen.specimen.loaded_bearings import BEARINGS, shaft_load_n
@@ -37,11 +35,11 @@ def raw(clearance_um: float = 10.0, **changes: Any) -> dict[str, Any]:
     return minimal(**{**short, **bearings, **changes})
 
 
-def made(clearance_um: float = 10.0, **changes: Any) -> Config:
+def made(clearance_um: float = 10.0, **changes: Any) -> SetDesign:
     return load_config(raw(clearance_um, **changes))
 
 
-def signal(chosen: Config, record: int) -> np.ndarray:
+def signal(chosen: SetDesign, record: int) -> np.ndarray:
     (found,) = simulate(chosen, [record])
     return np.asarray(found.channels["bearing_vertical"], dtype=float)
 
@@ -50,7 +48,7 @@ def signal(chosen: Config, record: int) -> np.ndarray:
 @pytest.mark.parametrize("torque_nm", [60.0, -60.0])
 def test_the_load_of_a_bearing_is_what_the_flanks_that_touch_press_and_its_weight(model: str, torque_nm: float) -> None:
     chosen = made(dynamics__model=model)
-    specimen, pair = draw_specimen(chosen, 0), draw_specimen(chosen, 0).pair
+    specimen, pair = chosen.gearbox(0), chosen.gearbox(0).pair
     seen = structure(specimen)
     if torque_nm < 0.0:
         seen = on_back_flanks(seen, 0.0)
@@ -63,8 +61,8 @@ def test_the_load_of_a_bearing_is_what_the_flanks_that_touch_press_and_its_weigh
 def test_a_shaft_moves_by_a_little_more_load_as_its_balls_do() -> None:
     """The structure's tangent against two static solutions of the law ball by ball."""
     chosen = made(20.0)
-    specimen = draw_specimen(chosen, 0)
-    point = draw_operating_point(chosen, 0, 0)
+    specimen = chosen.gearbox(0)
+    point = chosen.drawn_points(0)[0]
     more = OperatingPoint(point.speed_hz, 1.02 * point.torque_nm)
     before, after = (specimen_bearings(specimen.under(one))["pinion"] for one in (point, more))
     moved = after.moved_m * after.direction - before.moved_m * before.direction
@@ -81,7 +79,7 @@ def test_a_shaft_that_hardly_bends_stands_on_its_bearings_as_without_shafts() ->
     stout = {"bearing_span_mm": 60.0, "diameter_mm": 38.0}
     plain = {"dynamics__model": "casing", "housing__kind": "rigid"}
     with_shafts = made(**plain, dynamics__shafts={"pinion": stout, "gear": stout})
-    short, without = (structure(draw_specimen(one, 0)) for one in (with_shafts, made(**plain)))
+    short, without = (structure(one.gearbox(0)) for one in (with_shafts, made(**plain)))
     kept = [short.coordinates.index(name) for name in without.coordinates]
     for name, (force, _) in without.bearing_forces.items():
         size = np.abs(force).max()
@@ -107,8 +105,7 @@ def test_a_record_depends_on_its_own_load_alone() -> None:
     base = {"states": {"healthy": {}}, "background__bearings": {}}
     both = made(operating_points=points, **base)
     stiffness = [
-        specimen_bearings(draw_specimen(both, 0).under(draw_operating_point(both, 0, n)))["pinion"].along_n_per_m
-        for n in (0, 1)
+        specimen_bearings(both.gearbox(0).under(both.drawn_points(0)[n]))["pinion"].along_n_per_m for n in (0, 1)
     ]
     assert stiffness[1] / stiffness[0] == pytest.approx(3.0 ** (1.0 / 3.0), rel=0.05)  # softer still by the clearance
     together = [r.channels["bearing_vertical"] for r in simulate(both, [0, 1])]
@@ -119,13 +116,13 @@ def test_a_record_depends_on_its_own_load_alone() -> None:
 
 def test_a_stiffness_in_newtons_per_metre_stays_what_it_is() -> None:
     plain = config(states={"healthy": {}})
-    specimen = draw_specimen(plain, 0)
+    specimen = SetDesign(plain).gearbox(0)
     assert specimen.under(OperatingPoint(1.0, 999.0)) is specimen
     assert specimen_bearings(specimen) == {}
 
 
 def test_plan_says_the_stiffness_of_every_bearing_load_and_changed_state() -> None:
-    notes = [note for note in shaft_notes(PossibleGearbox(made())) if note.startswith("both bearings")]
+    notes = [note for note in shaft_notes(made().possible) if note.startswith("both bearings")]
     assert len(notes) == 3
     assert "state loose" in notes[2]
     assert "clearance 40 um" in notes[2]
@@ -133,10 +130,10 @@ def test_plan_says_the_stiffness_of_every_bearing_load_and_changed_state() -> No
 
 def test_plan_says_which_given_stiffness_a_bearing_replaces_and_which_it_does_not() -> None:
     given = {"dynamics__gear__bearing_stiffness_y_n_per_m": 1e8}
-    (note,) = (note for note in shaft_notes(PossibleGearbox(made(**given))) if "not used" in note)
+    (note,) = (note for note in shaft_notes(made(**given).possible) if "not used" in note)
     assert note.startswith(f"{STIFFNESS}: not used")
     assert "dynamics.gear.bearing: null" in note
-    without = PossibleGearbox(made(**given, dynamics__gear__bearing=None))
+    without = made(**given, dynamics__gear__bearing=None).possible
     assert not [note for note in shaft_notes(without) if "not used" in note]
 
 

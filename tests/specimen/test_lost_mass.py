@@ -10,7 +10,6 @@ import pytest
 from siggen.dynamics.drive.drive import Turning
 from siggen.dynamics.drive.external_forces import turning_sense
 from siggen.dynamics.structure.structure import Structure
-from siggen.gearbox.draw import draw_specimen
 from siggen.gears.damage.chip import WholeChip, tooth_height_m
 from siggen.gears.damage.lost_mass import STEEL_KG_M3, lost_moment_kg_m
 from siggen.gears.damage.part import Parts
@@ -64,7 +63,7 @@ def test_shares_of_the_face_add_up_and_a_whole_tooth_weighs_about_three_square_m
 
 def machine() -> tuple[Structure, GearPair]:
     config = config_with({"kind": "chip", "height_mm": 1.0})
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     return structure(specimen), specimen.pair
 
 

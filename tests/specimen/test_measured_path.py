@@ -14,10 +14,10 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config, parse, parse_yaml, yaml_text
+from siggen.config import yaml_text
 from siggen.dynamics.time.response import Response
 from siggen.errors import ConfigError
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign, stored_design
 from siggen.gearbox.mode_table import seats_of
 from siggen.names import PAIR
 from siggen.planning.plan import planned_record
@@ -79,13 +79,13 @@ def save(values: dict[str, np.ndarray], file: Path) -> None:
             np.savez(file, **values)
 
 
-def signal(config: Config) -> np.ndarray:
+def signal(config: SetDesign) -> np.ndarray:
     result = simulate(config, [0])[0]
     assert isinstance(result, SimulatedRecord), result
     return result.channels["lid_vertical"]
 
 
-def passed(config: Config, response: Response, residues: dict[str, tuple[float, ...]]) -> np.ndarray:
+def passed(config: SetDesign, response: Response, residues: dict[str, tuple[float, ...]]) -> np.ndarray:
     """Return the bearing forces of a record through two resonances each, (n,)."""
     length = 2**16  # nothing wraps round
     hz = np.arange(length // 2 + 1) * config.fs_hz / length
@@ -101,7 +101,7 @@ def passed(config: Config, response: Response, residues: dict[str, tuple[float, 
 def test_forces_of_all_bearings_pass_a_response_from_a_file(tmp_path: Path) -> None:
     save(columns(), tmp_path / "lid.npz")
     config = load_config(written(tmp_path, {"file": "lid.npz"}))
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     response, _ = record_response(specimen, specimen_state(specimen, 0), planned_record(config, 0))
     expected = passed(config, response, RESIDUES)
     # 1 Hz between the lines of the file, and a response that ends at half the sampling rate
@@ -120,7 +120,7 @@ def test_forces_of_every_shaft_of_a_machine_pass_under_its_users_names(tmp_path:
     sensor = {**SENSOR, "path": {"file": "lid.npz"}}
     (tmp_path / "set.yaml").write_text(yaml_text(mill(sensors=by_name([sensor]), fs_hz=25600.0, duration_s=0.1)))
     config = load_config(tmp_path / "set.yaml")
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     response, _ = record_response(specimen, specimen_state(specimen, 0), planned_record(config, 0))
     # 1 Hz between the lines of the file, and a response that ends at half the sampling rate
     expected = passed(config, response, residues)
@@ -148,11 +148,10 @@ def test_the_set_needs_the_file_no_more(tmp_path: Path) -> None:
     config = load_config(written(tmp_path, {"kind": "measured", "file": "lid.csv"}))
     digest = hashlib.sha256((tmp_path / "lid.csv").read_bytes()).hexdigest()
     assert config.sensors[0].path.sha256 == digest  # type: ignore[union-attr]
-    stored = yaml_text(config.canonical())
+    stored = config.text
     (tmp_path / "lid.csv").unlink()
-    again = parse(parse_yaml(stored)).config
+    again = stored_design(stored.encode(), "set")
     assert again == config
-    assert again is not None
     assert again.identity == config.identity
     (tmp_path / "stored.yaml").write_text(stored)
     assert signal(load_config(tmp_path / "stored.yaml")).tobytes() == signal(config).tobytes()

@@ -14,12 +14,11 @@ from siggen.checks.loading import load_config
 from siggen.checks.plausibility import quantities
 from siggen.cli.app import app
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config, parse_yaml, yaml_text
-from siggen.dataset.card_making import making
+from siggen.config import parse_yaml, yaml_text
 from siggen.errors import ConfigError
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.description import making
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.mode_table import seats_of
-from siggen.gearbox.possible import PossibleGearbox
 from siggen.names import PAIR
 from siggen.planning.plan import planned_record
 from siggen.record.simulation import record_response
@@ -52,7 +51,7 @@ def written(folder: Path, text: str, **changes: Any) -> Path:
     return source
 
 
-def record(config: Config) -> SimulatedRecord:
+def record(config: SetDesign) -> SimulatedRecord:
     (found,) = simulate(config, [0])
     assert isinstance(found, SimulatedRecord), found
     return found
@@ -76,7 +75,7 @@ def test_a_box_of_plates_read_back_from_its_modes_gives_the_same_record(tmp_path
 
 def test_a_sensor_sees_two_modes_as_their_closed_form_says(tmp_path: Path) -> None:
     config = load_config(written(tmp_path, "\n".join([HEAD, *ROWS])))
-    found, specimen = record(config).channels["lid_vertical"], draw_specimen(config, 0)
+    found, specimen = record(config).channels["lid_vertical"], config.gearbox(0)
     response, _ = record_response(specimen, specimen_state(specimen, 0), planned_record(config, 0))
     length = 2**16  # one transform, in which nothing wraps round
     omega, own = 2.0 * np.pi * np.arange(length // 2 + 1) * config.fs_hz / length, 2.0 * np.pi * FREQUENCY_HZ
@@ -108,7 +107,7 @@ def test_the_example_of_the_page_is_read(tmp_path: Path) -> None:
     (text,) = re.findall(r"```text\n(# a box.*?)```", PAGE.read_text(), re.DOTALL)
     config = load_config(written(tmp_path, text))
     assert record(config).channels["lid_vertical"].std() > 0.0
-    assert not [one for one in quantities(PossibleGearbox(config)) if one.path == "housing.modes" and one.implausible]
+    assert not [one for one in quantities(config.possible) if one.path == "housing.modes" and one.implausible]
 
 
 BAD = {
@@ -144,7 +143,7 @@ def test_shapes_of_another_scale_are_implausible(tmp_path: Path) -> None:
     """As of a model in tonnes: shapes in 1/sqrt(t) are 32 times as large."""
     rows = [",".join([*row.split(",")[:2], *(str(31.6 * float(x)) for x in row.split(",")[2:])]) for row in ROWS]
     config = load_config(written(tmp_path, "\n".join([HEAD, *rows])))
-    assert [one for one in quantities(PossibleGearbox(config)) if one.path == "housing.modes" and one.implausible]
+    assert [one for one in quantities(config.possible) if one.path == "housing.modes" and one.implausible]
 
 
 def test_a_base_needs_participation_factors(tmp_path: Path) -> None:

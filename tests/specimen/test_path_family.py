@@ -10,9 +10,9 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.cli.app import app
-from siggen.config import Config, parse, parse_yaml, yaml_text
+from siggen.config import parse, parse_yaml, yaml_text
 from siggen.errors import ConfigError
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.specimen.instrument import specimen_instrument
 from tests.config.minimal import by_name, minimal
 from tests.simulated import simulate
@@ -40,8 +40,8 @@ def with_paths(folder: Path, path: dict[str, Any], sensors: int = 1) -> Path:
     return source
 
 
-def rms_levels(config: Config, specimen: int) -> list[float]:
-    channels = specimen_instrument(draw_specimen(config, specimen)).channels
+def rms_levels(config: SetDesign, specimen: int) -> list[float]:
+    channels = specimen_instrument(config.gearbox(specimen)).channels
     return [channel.path_rms_m_s2_per_n for channel in channels]
 
 
@@ -75,7 +75,7 @@ def test_a_set_with_several_paths_needs_no_file(tmp_path: Path) -> None:
     again = parse(parse_yaml(yaml_text(config.canonical()))).config
     assert again is not None
     assert again.identity == config.identity
-    assert rms_levels(again, 3) == rms_levels(config, 3)
+    assert rms_levels(SetDesign(again), 3) == rms_levels(config, 3)
 
 
 def test_a_wrong_file_of_several_is_named(tmp_path: Path) -> None:

@@ -16,7 +16,6 @@ from siggen.checks.loading import load_config
 from siggen.dynamics.structure.forced_motion import forced_motion
 from siggen.dynamics.structure.makers import SEATS_OF_SET, planetary_train
 from siggen.dynamics.structure.structure import Structure
-from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.specimen import Specimen
 from siggen.sensing.inputs import MOTION, Input
 from siggen.specimen.background import AXES, EVEN, mean_meshes, mesh_directions
@@ -48,7 +47,7 @@ def machine(housing: dict[str, Any], **changes: Any) -> Specimen:
     dynamics = {**planets()["dynamics"], "model": "casing"}
     lid = {**LID, "position_mm": [60.0, 110.0]} if housing["kind"] == "rigid" else LID
     config = load_config(planets(dynamics=dynamics, housing=housing, sensors=by_name([lid]), **changes))
-    return draw_specimen(config, 0)
+    return config.gearbox(0)
 
 
 def way(specimen: Specimen) -> dict[str, ChannelWay]:

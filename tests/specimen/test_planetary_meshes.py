@@ -10,7 +10,6 @@ import pytest
 from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
 from siggen.columns.planetary_columns import manufacture_of_others
-from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.specimen import Specimen
 from siggen.gears.errors.gear_errors import eccentric_m
 from siggen.gears.geometry.internal_pair import ring_begins_pitches
@@ -25,7 +24,7 @@ COUNT = 3
 
 @pytest.fixture(scope="module")
 def specimen() -> Specimen:
-    return draw_specimen(load_config(planets(manufacture={"accuracy_class": 6, "flank_waves": "on"})), 0)
+    return load_config(planets(manufacture={"accuracy_class": 6, "flank_waves": "on"})).gearbox(0)
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +103,7 @@ def test_an_eccentric_planet_stands_back_from_sun_and_ring_as_the_structure_says
 
 
 def test_the_ring_weighs_and_turns_like_thin_hoops_of_steel() -> None:
-    specimen = draw_specimen(load_config(planets()), 0)
+    specimen = load_config(planets()).gearbox(0)
     ring, inner = specimen.planets.stage.ring, specimen.planets.ring
     # From the root circle of its teeth to the rim, four modules behind; teeth of the ring point inwards.
     edges = np.linspace(inner.gear.root_radius_m, inner.gear.root_radius_m + 4.0 * inner.gear.module_m, 10_001)

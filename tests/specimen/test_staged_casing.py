@@ -16,7 +16,7 @@ from siggen.dynamics.structure.makers import GROUND
 from siggen.dynamics.structure.structure import Structure, matrices
 from siggen.dynamics.time.equations import mesh_springs
 from siggen.dynamics.time.modes import natural_modes
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.specimen.staged_structure import axis_places_m
 from siggen.specimen.structure import specimen_body, structure
 from tests.config.staged import SLOW, staged
@@ -30,7 +30,7 @@ def built(model: str, **housing: Any) -> Structure:
     raw = staged(dynamics={"model": model}, stages=[{**SLOW, "direction_deg": 35.0}], **more)
     parsed = parse(raw)
     assert parsed.config is not None, parsed.problems
-    return structure(draw_specimen(parsed.config, 0))
+    return structure(SetDesign(parsed.config).gearbox(0))
 
 
 def at_rest(found: Structure, torque_nm: float = 20.0) -> np.ndarray:
@@ -64,7 +64,7 @@ def test_bolts_carry_what_all_shafts_press_with() -> None:
         assert abs(sum(forces[f"{place}/{axis}"] for place in places)) < 1e-9 * largest
     parsed = parse(staged(stages=[{**SLOW, "direction_deg": 35.0}]))
     assert parsed.config is not None
-    axes = axis_places_m(draw_specimen(parsed.config, 0))
+    axes = axis_places_m(SetDesign(parsed.config).gearbox(0))
     moment = sum(
         axes[place][1] * forces[f"{place}/horizontal"] - axes[place][0] * forces[f"{place}/vertical"]
         for place in places
@@ -77,7 +77,7 @@ def test_the_modes_of_a_rigid_casing_make_the_same_machine() -> None:
     rigid = staged(dynamics={"model": "casing"}, housing={"kind": "rigid"}, stages=[{**SLOW, "direction_deg": 35.0}])
     parsed = parse(rigid)
     assert parsed.config is not None, parsed.problems
-    specimen = draw_specimen(parsed.config, 0)
+    specimen = SetDesign(parsed.config).gearbox(0)
     body = specimen_body(specimen)
     alone = Drivetrain((body.body, GROUND), body.bolts)
     mass, _, stiffness = matrices(alone)
@@ -92,7 +92,7 @@ def test_the_modes_of_a_rigid_casing_make_the_same_machine() -> None:
     text = "\n".join([",".join(columns), *(",".join(repr(float(x)) for x in row) for row in rows), ""])
     modal = parse({**rigid, "housing": {"kind": "modal", "modes": text}})
     assert modal.config is not None, modal.problems
-    first, second = (structure(draw_specimen(config, 0)) for config in (parsed.config, modal.config))
+    first, second = (structure(SetDesign(config).gearbox(0)) for config in (parsed.config, modal.config))
     expected, found = (natural_modes(one, MESH).frequency_hz for one in (first, second))
     assert found == pytest.approx(expected, rel=1e-9, abs=1e-6)
     assert "slow_shaft/vertical" in second.motions
@@ -101,7 +101,7 @@ def test_the_modes_of_a_rigid_casing_make_the_same_machine() -> None:
 def test_shafts_stand_at_their_centre_distances_in_their_directions() -> None:
     parsed = parse(staged(stages=[{**SLOW, "direction_deg": 35.0}]))
     assert parsed.config is not None
-    places = axis_places_m(draw_specimen(parsed.config, 0))
+    places = axis_places_m(SetDesign(parsed.config).gearbox(0))
     first, second = 1e-3 * 2.0 * (18 + 47) / 2, 1e-3 * 3.0 * (17 + 52) / 2
     pinion, gear, last = (np.array(places[f"{name}_bearing"]) for name in ("pinion", "gear", "slow"))
     assert gear - pinion == pytest.approx([-first, 0.0])

@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 
 import siggen
-from siggen.config import Config
 from siggen.dynamics.time.response import SampleGrid, Wanted, response_of
 from siggen.dynamics.time.transient import DECAY_TIMES, TRANSIENT_CAP_S, forgotten
-from siggen.gearbox.draw import draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.planning.plan import planned_record
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen import step_choice
@@ -27,22 +26,22 @@ QUICKSTART = Path(__file__).parents[2] / "configs" / "quickstart.yaml"
 FINE_STEPS, RECORD = 64, 3
 
 
-def loaded(*overrides: str) -> Config:
+def loaded(*overrides: str) -> SetDesign:
     """Return quickstart, short, with some overrides."""
     return siggen.load_config(QUICKSTART, ["duration_s=0.1", "specimens=1", *overrides])
 
 
-def steps_of(config: Config) -> int:
+def steps_of(config: SetDesign) -> int:
     """Return the steps of the rule for the first operating point of the first gearbox."""
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     mesh = specimen_state(specimen, 0).mesh
     return rule_grid(config.fs_hz, specimen.law, mesh, specimen.points[0]).steps
 
 
-def chosen_steps(config: Config) -> tuple[Config, Stepped, RecordDrive]:
+def chosen_steps(config: SetDesign) -> tuple[SetDesign, Stepped, RecordDrive]:
     """Return a configuration with how a record of it is stepped and driven."""
     record = planned_record(config, RECORD)
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     mesh = specimen_state(specimen, record.state_id).mesh
     point, driven = specimen.points[record.operating_point_id], record_drive(specimen, mesh.structure, record)
     return config, stepped_motion(specimen.sampling, specimen.law, mesh, point, driven), driven
@@ -83,7 +82,7 @@ def test_slow_gears_without_friction_take_steps_of_1_4_rad_of_the_teeth_s_vibrat
     """A hundredth of the tolerance asks for a tenth of the step. The vibration is found by general eigenvalues."""
     slow = ["operating_points=[{speed_hz: 5, torque_nm: 60}]", "dynamics.friction.model=off"]
     config = loaded(*slow, "dynamics.integration_tolerance=1e-5")
-    mesh = specimen_state(draw_specimen(config, 0), 0).mesh
+    mesh = specimen_state(config.gearbox(0), 0).mesh
     structure, tables = mesh.structure, mesh.every[0].mesh.tables
     pairs = (tables.end_m - tables.start_m) / tables.base_pitch_m
     teeth = pairs * tables.pair_stiffness_n_per_m.max(axis=0).mean()
@@ -100,7 +99,7 @@ def test_friction_that_stops_light_gears_at_once_takes_more_steps() -> None:
 FAST, SLOW = "operating_points=[{speed_hz: 35, torque_nm: 40}]", "operating_points=[{speed_hz: 3, torque_nm: 1.5}]"
 
 
-def start_error(chosen: Stepped, driven: RecordDrive, config: Config) -> float:
+def start_error(chosen: Stepped, driven: RecordDrive, config: SetDesign) -> float:
     """Return by how much accelerations change where the record starts nine decay times before it does."""
     motion, grid = chosen.motion, SampleGrid(config.fs_hz, config.samples, chosen.grid.per_sample)
     found, wanted = (
@@ -117,7 +116,7 @@ def test_a_record_starts_as_early_as_its_samples_need() -> None:
     transients = []
     for point in (FAST, SLOW):
         config, chosen, driven = chosen_steps(loaded("duration_s=0.05", point))
-        assert start_error(chosen, driven, config) <= 1.5 * START_SHARE * config.dynamics.integration_tolerance
+        assert start_error(chosen, driven, config) <= 1.5 * START_SHARE * config.config.dynamics.integration_tolerance
         transients.append(chosen.motion.transient_s / chosen.motion.decay_s)
     assert transients[1] > transients[0] + 1.0
 
@@ -126,7 +125,7 @@ def test_the_label_tells_what_is_left_of_a_start(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(step_choice, "START_SHARE", 100.0)
     config, chosen, driven = chosen_steps(loaded("duration_s=0.05", SLOW))
     error = start_error(chosen, driven, config)
-    assert error > config.dynamics.integration_tolerance
+    assert error > config.config.dynamics.integration_tolerance
     assert chosen.error == pytest.approx(error, rel=0.75)
     assert chosen.error_of == "samples"
 
@@ -148,7 +147,7 @@ def test_levels_are_compared_where_teeth_part_and_samples_have_nothing_in_common
 @pytest.mark.slow  # presets within their stated error: test_fast_against_reference.py
 def test_the_label_of_a_record_is_its_error_within_a_factor_of_two() -> None:
     config, chosen, driven = chosen_steps(loaded())
-    specimen = draw_specimen(config, 0)
+    specimen = config.gearbox(0)
     record = planned_record(config, RECORD)
     mesh = specimen_state(specimen, record.state_id).mesh
     point = specimen.points[record.operating_point_id]
@@ -164,6 +163,6 @@ def test_the_label_of_a_record_is_its_error_within_a_factor_of_two() -> None:
     error = largest_error(found, wanted)
     assert chosen.error is not None
     assert 0.5 * error <= chosen.error <= 2.0 * error
-    assert chosen.error <= MARGIN * config.dynamics.integration_tolerance
+    assert chosen.error <= MARGIN * config.config.dynamics.integration_tolerance
     (made,) = simulate(config, [RECORD])
     assert made.labels["integration_error"] == chosen.error

@@ -17,13 +17,13 @@ import pytest
 
 from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
-from siggen.config import Config, read_yaml
+from siggen.config import read_yaml
 from siggen.dynamics.drive.excitation import InputSource
 from siggen.dynamics.drive.external_forces import Unbalance, shaft_mass
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.equations import no_inputs
 from siggen.dynamics.time.pair_motion import PairMotion
-from siggen.gearbox.draw import draw_operating_point, draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.names import PAIR
 from siggen.planning.plan import planned_record
@@ -64,15 +64,15 @@ def two_stages(**stage: Any) -> dict[str, Any]:
 
 
 @cache
-def config(*overrides: str) -> Config:
+def config(*overrides: str) -> SetDesign:
     return load_config(two_stages(), overrides)
 
 
 @cache
-def machine(*overrides: str) -> tuple[Config, Specimen, SpecimenMesh, OperatingPoint]:
+def machine(*overrides: str) -> tuple[SetDesign, Specimen, SpecimenMesh, OperatingPoint]:
     found = config(*overrides)
-    specimen = draw_specimen(found, 0)
-    return found, specimen, specimen_state(specimen, 0).mesh, draw_operating_point(found, 0, 2)
+    specimen = found.gearbox(0)
+    return found, specimen, specimen_state(specimen, 0).mesh, found.drawn_points(0)[2]
 
 
 def run(motion: PairMotion, pitches: FloatArray) -> FloatArray:
@@ -253,9 +253,9 @@ def test_a_missing_tooth_of_any_gear_shakes_that_gear(gear: str, order: float) -
     """A missing tooth leaves a mass on the other side, which turns with its shaft and stands at its tooth's angle."""
     damage = f"{{kind: chip, gear: {gear}, height_mm: whole}}"
     found = config(f"states={{healthy: {{}}, slight: {{damage: {damage}}}}}")
-    specimen, record = draw_specimen(found, 0), planned_record(found, 3)
+    specimen, record = found.gearbox(0), planned_record(found, 3)
     state = specimen_state(specimen, 1)
-    point, built = draw_operating_point(found, 0, 0), state.mesh.structure
+    point, built = found.drawn_points(0)[0], state.mesh.structure
     driven = record_drive(specimen, built, record, state.parts, state.parts_behind)
     assert driven.excitation is not None
     assert driven.excitation.vectors.shape[0] == 2
@@ -270,7 +270,7 @@ def test_a_missing_tooth_of_any_gear_shakes_that_gear(gear: str, order: float) -
 
 def test_shafts_that_let_gears_part_are_refused_with_the_place_to_change() -> None:
     found = load_config(two_stages(span_mm=1500.0), WITHOUT_FRICTION)
-    specimen = draw_specimen(found, 0)
-    motion = specimen_motion(specimen.law, specimen_state(specimen, 0).mesh, draw_operating_point(found, 0, 0), STEP_S)
+    specimen = found.gearbox(0)
+    motion = specimen_motion(specimen.law, specimen_state(specimen, 0).mesh, found.drawn_points(0)[0], STEP_S)
     with pytest.raises(ValueError, match="machine: a gear moves by"):
         motion.start(0.0)

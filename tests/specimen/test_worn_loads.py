@@ -10,7 +10,6 @@ import pytest
 
 from siggen.dynamics.mesh.pair_law import MeshConstants, pair_law
 from siggen.dynamics.mesh.static_stiffness import static_approaches_m
-from siggen.gearbox.draw import draw_specimen
 from siggen.gearbox.pair import gear_pair
 from siggen.gears.damage.flank_loss import with_losses
 from siggen.gears.damage.wear import POINTS, Worn, WornFlanks, worn_until
@@ -26,7 +25,7 @@ PER_PITCH = 960
 TEETH = StiffnessOptions("base_circle", "none")
 WORE_UNDER_N, FORCE_N, DEPTH_M, RELIEF_M = 2500.0, 1500.0, 20e-6, 60e-6
 """So long a relief for so little force that no tip corner touches beside the path: the computation by hand has none."""
-GEARS, SPECIMEN = config_with().gears, draw_specimen(config_with(), 0)
+GEARS, SPECIMEN = config_with().config.gears, config_with().gearbox(0)
 LAW = replace(SPECIMEN.law, relief_m=RELIEF_M)
 PAIR = SPECIMEN.pair
 PATH = np.linspace(PAIR.contact_start_m, PAIR.contact_end_m, POINTS)

@@ -20,7 +20,7 @@ from siggen.config import by_reference
 from siggen.dynamics.time.equations import no_inputs
 from siggen.errors import UsageError
 from siggen.gearbox.configured import state_config
-from siggen.gearbox.draw import draw_operating_point, draw_specimen
+from siggen.gearbox.design import SetDesign
 from siggen.planning.plan import planned_record
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.drive import record_drive
@@ -114,9 +114,9 @@ def beginning(
         ["duration_s=0.01", f"dynamics.steps_per_sample={steps}", *overrides],
     )
     if runge_kutta:
-        loaded = loaded.model_copy(update={"dynamics": by_reference(loaded.dynamics)})
+        loaded = loaded.with_sections(dynamics=by_reference(loaded.config.dynamics))
     planned = planned_record(loaded, record)
-    specimen = draw_specimen(loaded, planned.specimen_id)
+    specimen = loaded.gearbox(planned.specimen_id)
     state = specimen_state(specimen, planned.state_id)
     point, driven = specimen.points[planned.operating_point_id], record_drive(specimen, state.mesh.structure, planned)
     built = state.mesh.structure
@@ -211,9 +211,9 @@ def test_scipy_gives_the_motion_of_a_planetary_set_from_its_file_alone() -> None
 def test_the_model_starts_where_its_record_does() -> None:
     """From its start on, by its own steps, a motion comes to the record's values; one that starts later does not."""
     whole = load_config(planetary(), ["duration_s=0.005"])
-    model, loaded = exported_model(*drawn_record(whole, 0)), state_config(whole, 0, 0)
-    specimen, steps = draw_specimen(loaded, 0), int(model["steps_per_sample"])
-    point = draw_operating_point(loaded, 0, 0)
+    model, loaded = exported_model(*drawn_record(whole, 0)), state_config(whole.config, 0, 0)
+    specimen, steps = SetDesign(loaded).gearbox(0), int(model["steps_per_sample"])
+    point = loaded.drawn_points(0)[0]
     motion = specimen_motion(
         specimen.law, specimen_state(specimen, 0).mesh, point, float(model["step_s"])
     )  # fmt: skip

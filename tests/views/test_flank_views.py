@@ -7,9 +7,8 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.errors import UsageError
-from siggen.gearbox.draw import draw_specimen
 from siggen.views.flank_views import flank_damage_table, flank_views
-from tests.config.minimal import config
+from tests.config.minimal import design
 from tests.views.test_damage_outline import polygon_area
 
 LISTED = {
@@ -25,7 +24,7 @@ LISTED = {
 
 @pytest.fixture
 def views():
-    return flank_views(draw_specimen(config(states__slight__damage=LISTED), 0))
+    return flank_views(design(states__slight__damage=LISTED).gearbox(0))
 
 
 def test_one_view_per_damaged_tooth(views):
@@ -48,7 +47,7 @@ def test_zones_tile_the_active_profile_and_hold_the_pitch_line_in_single_contact
 
 
 def test_arcs_of_the_paper_gear_are_the_tabulated_ones():
-    view = flank_views(draw_specimen(load_config("configs/paper_a.yaml"), 0), state="moderate")[0]
+    view = flank_views(load_config("configs/paper_a.yaml").gearbox(0), state="moderate")[0]
     # Arc of the pitch point of 18 teeth at module 3.5 above the base circle, printed to 0.1 um.
     assert view.pitch_mm == pytest.approx(1.9606, abs=6e-5)
     assert len(view.outlines_mm) == len(view.depths_mm) == 16
@@ -57,20 +56,20 @@ def test_arcs_of_the_paper_gear_are_the_tabulated_ones():
 
 def test_the_table_holds_every_damage_of_every_state():
     usable = load_config("configs/paper_a.yaml")
-    table = flank_damage_table(draw_specimen(usable, 0))
+    table = flank_damage_table(usable.gearbox(0))
     states = table["state"].to_pylist()
     assert {state: states.count(state) for state in set(states)} == {"slight": 8, "moderate": 16, "severe": 48}
     assert "record_id" not in table.column_names
-    assert flank_damage_table(draw_specimen(usable, 0), state="healthy").num_rows == 0
+    assert flank_damage_table(usable.gearbox(0), state="healthy").num_rows == 0
 
 
 def test_damage_is_that_of_the_asked_specimen_whatever_its_records():
-    usable = config(repeats=3, operating_points=[{"speed_hz": 30.0, "torque_nm": 60.0}] * 2)
+    usable = design(repeats=3, operating_points=[{"speed_hz": 30.0, "torque_nm": 60.0}] * 2)
     for specimen in (0, 1, 7):
-        teeth = set(flank_damage_table(draw_specimen(usable, specimen))["tooth"].to_pylist())
-        assert teeth == {view.tooth for view in flank_views(draw_specimen(usable, specimen))}
+        teeth = set(flank_damage_table(usable.gearbox(specimen))["tooth"].to_pylist())
+        assert teeth == {view.tooth for view in flank_views(usable.gearbox(specimen))}
 
 
 def test_an_unknown_state_is_refused_with_the_known_ones():
     with pytest.raises(UsageError, match="healthy, slight"):
-        flank_views(draw_specimen(config(), 0), state="severe")
+        flank_views(design().gearbox(0), state="severe")

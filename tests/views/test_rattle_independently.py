@@ -15,7 +15,6 @@ from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
 from siggen.config import by_reference
 from siggen.dynamics.time.equations import no_inputs
-from siggen.gearbox.draw import draw_operating_point, draw_specimen
 from siggen.planning.plan import planned_record
 from siggen.record.specimen_state import specimen_state
 from siggen.specimen.motion import specimen_motion
@@ -44,14 +43,14 @@ def knocked(torque_nm: float, knock_m_s: float, steps: int, samples: int = SAMPL
     overrides = ["duration_s=0.01", "dynamics.model=8dof", "housing={}", *PINION, *torques]
     config = load_config(ROOT / "tests/configs/casing.yaml", overrides)
     if reference:
-        config = config.model_copy(update={"dynamics": by_reference(config.dynamics, steps)})
+        config = config.with_sections(dynamics=by_reference(config.config.dynamics, steps))
     model = {name: np.asarray(value)[()] for name, value in exported_model(*drawn_record(config, RECORD)).items()}
     model["start_s"] = KNOCKED_S
     model["start_state"] = after(model, knock_m_s)
     planned = planned_record(config, RECORD)
-    specimen = draw_specimen(config, planned.specimen_id)
+    specimen = config.gearbox(planned.specimen_id)
     mesh = specimen_state(specimen, planned.state_id).mesh
-    point = draw_operating_point(config, planned.specimen_id, planned.operating_point_id)
+    point = config.drawn_points(planned.specimen_id)[planned.operating_point_id]
     motion = specimen_motion(specimen.law, mesh, point, 1.0 / (config.fs_hz * steps))
     times = model["start_s"] + np.arange(samples * steps + 1) / (config.fs_hz * steps)
     turned = model["start_angle_rad"] + 2.0 * np.pi * point.speed_hz * times

@@ -102,7 +102,7 @@ def test_recordings_at_half_the_rate_of_the_rig_take_one_call(
     assert result.exit_code == 0, result.output
     config = siggen.load_config(tmp_path / "slow.yaml")
     # 12,800 Hz over 2.56 carry 5,000 Hz: seven harmonics of 18 teeth at 35 Hz
-    assert (config.fs_hz, config.mesh_harmonics) == (12_800.0, 7)
+    assert (config.fs_hz, config.config.mesh_harmonics) == (12_800.0, 7)
 
 
 def test_every_gearbox_of_the_set_draws_its_own_path(calibrated: tuple[Path, Path, str]) -> None:

@@ -17,8 +17,8 @@ import pytest
 from diagnostics.cli.app import main
 from diagnostics.indicators.classifier_table import table_notes
 from siggen.columns.record import SimulatedRecord
-from siggen.config import Config
 from siggen.dataset.seal import sealed
+from siggen.gearbox.design import SetDesign
 from siggen.planning.plan import planned_record
 from tests.dataset.fake_set import fake_config, fake_record, write_fake_set
 from tests.dataset.resealed_set import reseal
@@ -34,7 +34,7 @@ CHANNEL = "bearing_vertical"
 Edit = Callable[[Path], object]
 
 
-def turning(config: Config, record_ids: Sequence[int]) -> list[SimulatedRecord]:
+def turning(config: SetDesign, record_ids: Sequence[int]) -> list[SimulatedRecord]:
     """Stand in for the physics, with ten pulses: nine revolutions of the pinion, three of the gear."""
     found = [fake_record(config, planned_record(config, i)) for i in record_ids]
     return [replace(record, tacho_s=np.arange(10) / 30.0 + 0.001) for record in found]

@@ -11,7 +11,6 @@ from siggen.checks.loading import load_config
 from siggen.dynamics.friction.friction import constant_friction
 from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, POSITION, SLIDING
 from siggen.dynamics.time.pair_motion import PairMotion
-from siggen.gearbox.draw import draw_specimen
 from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
 from siggen.planning.plan import planned_record
 from siggen.record.simulation import record_response
@@ -99,7 +98,7 @@ def test_alike_pits_on_all_teeth_make_mesh_harmonics_only() -> None:
 )
 def test_halving_the_step_of_a_shipped_set_changes_its_signals_by_less_than_a_thousandth(name: str) -> None:
     config = load_config(f"{name}.yaml", ["duration_s=0.1", "specimens=1"])
-    steps = config.dynamics.steps_per_sample
+    steps = config.config.dynamics.steps_per_sample
     levels = []
     for factor in (1, 2):
         chosen = load_config(
@@ -107,7 +106,7 @@ def test_halving_the_step_of_a_shipped_set_changes_its_signals_by_less_than_a_th
             ["duration_s=0.1", "specimens=1", f"dynamics.steps_per_sample={factor * steps}"],
         )
         record = planned_record(chosen, chosen.records_per_specimen - 1)
-        specimen = draw_specimen(chosen, 0)
+        specimen = chosen.gearbox(0)
         response, _ = record_response(specimen, specimen_state(specimen, record.state_id), record)
         levels.append([signal.std() for signal in response.acceleration_m_s2.values()])
     np.testing.assert_allclose(levels[0], levels[1], rtol=1e-3)

@@ -1,4 +1,4 @@
-"""How a set was made, in words that follow from its configuration: nothing that it does not use, all that it does."""
+"""A design in words: which faults it has, and how its set was made; nothing that it does not use, all that it does."""
 
 from __future__ import annotations
 
@@ -6,11 +6,18 @@ from collections.abc import Sequence
 from textwrap import fill
 from typing import TYPE_CHECKING
 
-from siggen.columns.record import ChannelColumn
+from siggen.config.oil import oils_of
 from siggen.errors import counted
+from siggen.faults.registry import HEALTHY
+from siggen.gearbox.design import STATING
+from siggen.gearbox.lived import SEVERITIES
+from siggen.gearbox.mode_table import mode_table
+from siggen.names import SEVERAL
+from siggen.sensors.converter import FROM_NOISE
 
 if TYPE_CHECKING:
     from siggen.config import Config, StateSection
+    from siggen.gearbox.design import SetDesign
 
 WIDTH = 118
 STIFFNESS_DAMAGE = "remove material from the tooth's sections and shorten the contact line: the mesh loses stiffness."
@@ -50,8 +57,26 @@ LIVES = (
 )
 
 
-def making(config: Config) -> str:
+PERFECT_GEARS = """* **The gears have no manufacturing errors.** A healthy gearbox here has no sidebands around its mesh
+  harmonics except those of the noise, so healthy and faulty separate trivially, by almost any indicator. Do not read a
+  detection score on this set as one for real gearboxes, where pitch errors and run-out raise the same sidebands.
+  What the set can teach: the shape, order and growth of fault signatures, effects of speed, load, noise and position,
+  and whether a processing chain finds a signature that is known to be there.
+"""
+TOLERANCES = """* **Gears have manufacturing errors** within flank tolerance class {classes} of ISO 1328-1
+  (share used: {share}), every tooth its own: healthy records have sidebands too. {owner}
+"""
+OWNERS = {
+    "specimen": "All states of a specimen have the same gears, as on a rig before and after damage, so a difference "
+    "between\n  its states is the damage.",
+    "state": "Every state of a specimen has gears of its own from the same drawing, so no difference between states is "
+    "the\n  damage alone.",
+}
+
+
+def making(design: SetDesign) -> str:
     """Return the section `How it was made` of a set's card."""
+    config = design.config
     steps = (
         f"1. **Gears.** {_gears_text(config)}",
         f"2. **Damage.** {damage_text(config)}",
@@ -60,6 +85,43 @@ def making(config: Config) -> str:
     )
     listed = "\n".join(fill(step, WIDTH, subsequent_indent="   ", break_on_hyphens=False) for step in steps)
     return f"## How it was made\n\n{listed}\n\n{_states_text(config)}\n"
+
+
+def faults(design: SetDesign) -> tuple[str, ...]:
+    """Return the kinds of fault of a set, in the order of its states; none of a set of healthy gearboxes."""
+    config = design.config
+    if config.life is not None:
+        return tuple(section.words[0] for section in config.damages)
+    return tuple(dict.fromkeys(state.fault for state in config.states if state.faulty))
+
+
+def faults_text(design: SetDesign) -> str:
+    """Return the kinds of fault as the words of a title."""
+    *first, last = faults(design) or ("healthy gears alone",)
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def class_words(design: SetDesign) -> dict[str, tuple[str, ...]]:
+    """Return the labels that are classes, each with its words in the order of their numbers."""
+    config = design.config
+    words = {"fault": (HEALTHY, *faults(design)), "severity": SEVERITIES}
+    if config.life is None:
+        words = {key: tuple(dict.fromkeys(getattr(state, key) for state in config.states)) for key in words}
+    gears = ("none", *(gear.word for gear in config.names.gears), SEVERAL)
+    return {"state": config.state_names, **words, "faulty_gear": gears}
+
+
+def machine_word(design: SetDesign) -> str:
+    """Return what its gearboxes are called."""
+    return "spur gear pair" if design.config.machine is None else "gearbox"
+
+
+def tolerances_text(design: SetDesign) -> str:
+    """Say what follows from the gears being perfect, or how far they are from it."""
+    section = design.config.manufacture
+    if section is None:
+        return PERFECT_GEARS
+    return TOLERANCES.format(classes=section.classes_text, share=section.tolerance_share, owner=OWNERS[section.draw])
 
 
 def _states_text(config: Config) -> str:
@@ -161,19 +223,14 @@ def _dynamics_text(config: Config) -> str:
     )
 
 
-def stated_tolerance(config: Config) -> float | None:
-    """Return the error of the delivered signals (relative rms) that a set states, or None if it states none."""
-    return config.dynamics.integration_tolerance if config.dynamics.method == "exponential" else None
-
-
 def integration_text(config: Config) -> str:
     """Say how time is stepped, and which error is stated for it."""
-    tolerance, head = stated_tolerance(config), f"Time is stepped by `{config.dynamics.method}`"
-    if tolerance is None:
-        return f"{head}, {counted(config.dynamics.steps_per_sample, 'step')} per sample; no error is stated for it."
+    dynamics, head = config.dynamics, f"Time is stepped by `{config.dynamics.method}`"
+    if dynamics.method != STATING:
+        return f"{head}, {counted(dynamics.steps_per_sample, 'step')} per sample; no error is stated for it."
     return (
-        f"{head}, with steps for a relative rms error of {tolerance:g} in the delivered signals, the same for all "
-        "states of a gearbox; `siggen verify --physics` measures it."
+        f"{head}, with steps for a relative rms error of {dynamics.integration_tolerance:g} in the delivered "
+        "signals, the same for all states of a gearbox; `siggen verify --physics` measures it."
     )
 
 
@@ -187,8 +244,6 @@ def _sensing_text(config: Config) -> str:
 
 def _steps_text(config: Config) -> str:
     """Return the steps of all converters, each with the sensors that have it."""
-    from siggen.sensors.converter import FROM_NOISE  # not for those who read: it loads the model of the configuration
-
     sensors: dict[str, list[str]] = {}
     for one in config.sensors:
         of_noise = ", at most a fifth of the noise floor" if one.bits == FROM_NOISE else ""
@@ -203,20 +258,6 @@ def _acts(config: Config) -> list[str]:
     return list(dict.fromkeys(one.acts for one in config.sensors if one.acts))
 
 
-def quantities_text(channels: Sequence[ChannelColumn]) -> str:
-    """Return what the channels of a set hold."""
-    words = list(dict.fromkeys(channel.quantity for channel in channels))
-    return " and ".join(part for part in (", ".join(words[:-1]), words[-1]) if part)
-
-
-def channels_text(channels: Sequence[ChannelColumn]) -> str:
-    """Return the channels with their places, by unit."""
-    by_unit: dict[str, list[str]] = {}
-    for channel in channels:
-        by_unit.setdefault(channel.unit, []).append(f"`{channel.name}` ({channel.place}, {channel.axis})")
-    return "; ".join(f"{', '.join(named)}, in {unit}" for unit, named in by_unit.items())
-
-
 def across_text(config: Config) -> str:
     """Say what the contact and the shafts know of the face width."""
     if config.dynamics.mesh.law == "linear":
@@ -227,8 +268,6 @@ def across_text(config: Config) -> str:
 
 def friction_text(config: Config) -> str:
     """Say whether and how the flanks rub."""
-    from siggen.config.oil import oils_of  # not for those who read: it loads the model of the configuration
-
     return FRICTION[config.dynamics.rubbing].format(oil=" or ".join(oils_of(config.dynamics.friction.oil)))
 
 
@@ -252,8 +291,6 @@ def _path_text(config: Config) -> str:
 
 
 def _housing_text(config: Config) -> str:
-    from siggen.gearbox.mode_table import mode_table  # not for those who read: it loads the model of a housing
-
     through = "Bearing forces reach the sensors through"
     if config.housing.kind != "modal":
         return f"{through} a box of plates on bolts, new for every specimen (`housing`). "

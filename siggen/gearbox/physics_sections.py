@@ -7,22 +7,23 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from siggen.config.changes import Change
 from siggen.config.inheritance import REPLACED, REPLACED_OF_DYNAMICS
-from siggen.dataset.card_making import drive_text, friction_text
 from siggen.errors import Problem
+from siggen.gearbox.description import drive_text, friction_text
 from siggen.keys.distributions import DRAWN
 from siggen.keys.section import Section
 
 if TYPE_CHECKING:
     from siggen.config import Config
+    from siggen.gearbox.design import SetDesign
 
 NOT_NUMBERS = ("name", "seed", "specimens", "kind")
 _Row: TypeAlias = tuple[str, str, str, bool]
 """Key, value, meaning and whether it is the default."""
 
 
-def physics_section(config: Config) -> str:
+def physics_section(design: SetDesign) -> str:
     """Return a table of what the simulation of this set has and has not."""
-    lines = [f"| {what} | {'on' if on else 'off'} | {how} |" for what, on, how in _physics(config)]
+    lines = [f"| {what} | {'on' if on else 'off'} | {how} |" for what, on, how in _physics(design.config)]
     return "\n".join(["## Physics that is on and off", "", "| what | | how |", "|---|---|---|", *lines, ""])
 
 
@@ -46,11 +47,12 @@ def _physics(config: Config) -> Iterator[tuple[str, bool, str]]:
     yield "background of a healthy machine", config.background is not None, "`background`"
 
 
-def assumed_numbers_section(config: Config) -> str:
+def assumed_numbers_section(design: SetDesign) -> str:
     """Return every number of the configuration with who chose it; none was fitted to the records.
 
     A default says nothing about any machine: it is what siggen takes where nobody says otherwise.
     """
+    config = design.config
     rows = list(_own(config) if config.machine is not None else _numbers("", config))
     chosen = sum(from_default is False for *_, from_default in rows)
     chosen_by = {True: "default", False: "configuration"}
