@@ -178,25 +178,11 @@ def dataset() -> MemoryDataset:
 
 
 @pytest.fixture(scope="session")
-def effectless() -> MemoryDataset:
-    """The same without any effect of the state on the signal."""
-    return memory_dataset(SPLITS_24, effect=0.0)
-
-
-@pytest.fixture(scope="session")
 def measured(dataset: MemoryDataset, tmp_path_factory: pytest.TempPathFactory) -> RecordTable:
     """The one pass over the separable set, which many tests begin with."""
     from diagnostics.indicators.table import record_table
 
     return shared(tmp_path_factory, "measured", lambda: record_table(dataset))
-
-
-@pytest.fixture(scope="session")
-def measured_effectless(effectless: MemoryDataset, tmp_path_factory: pytest.TempPathFactory) -> RecordTable:
-    """The one pass over the set without effect."""
-    from diagnostics.indicators.table import record_table
-
-    return shared(tmp_path_factory, "measured effectless", lambda: record_table(effectless))
 
 
 @pytest.fixture(scope="session")

@@ -35,7 +35,8 @@ def with_paths(folder: Path, path: dict[str, Any], sensors: int = 1) -> Path:
     common = {"place": "casing", "axes": ["vertical"], "bits": None, "path": {"kind": "measured", **path}}
     listed = [{**common, "name": f"s{k}"} for k in range(sensors)]
     source = folder / "set.yaml"
-    changes = {"dynamics__model": "casing", "duration_s": 0.1, "fs_hz": 25600.0}
+    rigid = {"kind": "rigid", "mass_kg": 40.0}
+    changes = {"dynamics__model": "casing", "duration_s": 0.1, "fs_hz": 25600.0, "housing": rigid}
     source.write_text(yaml_text(minimal(sensors=by_name(listed), **changes)))
     return source
 

@@ -32,6 +32,7 @@ def quick_bank(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bank_detections, "PERMUTATIONS", 19)
     monkeypatch.setattr(signal_attackers, "SHOWN", 0)
     monkeypatch.setattr(signal_attackers, "FEWEST_EPOCHS", 1)
+    monkeypatch.setattr(signal_attackers, "DILATIONS", (1, 8))
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:

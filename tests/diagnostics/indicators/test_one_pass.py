@@ -78,6 +78,7 @@ def test_ranking_training_audit_and_features_resample_and_average_once_per_recor
     folder, calls = made(tmp_path / "set", 8, {"train": 10, "validation": 5, "test": 5}), counted(monkeypatch)
     # What the audit's networks learn is not asked here: a few epochs read as many records as hundreds do.
     monkeypatch.setattr(signal_attackers, "SHOWN", 0)
+    monkeypatch.setattr(signal_attackers, "DILATIONS", (1, 8))
     monkeypatch.setattr(condition_traps, "PERMUTATIONS", 19)
     monkeypatch.setattr(bank_detections, "PERMUTATIONS", 19)
     for command, *options in (
