@@ -33,7 +33,7 @@ UNIT = "m_s2_per_n"
 UNITS = {"real": (UNIT,), "imag": (UNIT,), "magnitude": (UNIT,), "phase": ("rad", "deg")}
 """Units that the parts of a complex number may have."""
 COLUMN = re.compile(
-    r"^(vertical|horizontal|axial)_from_([a-z][a-z0-9_]*_bearing)_(vertical|horizontal|axial)"
+    r"^(vertical|horizontal|axial)_from_([A-Za-z][A-Za-z0-9_]*_bearing)_(vertical|horizontal|axial)"
     r"_(real|imag|magnitude|phase)_?(.*)$"
 )
 FREQUENCY = "frequency_hz"

@@ -34,6 +34,7 @@ from siggen.keys.merging import in_keys
 from siggen.keys.number import Number, Within, bounds
 from siggen.keys.problems import refusal
 from siggen.keys.section import Real, Section, Whole
+from siggen.keys.user_name import SetName
 from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
 from siggen.life.pitting import EXAMPLE
@@ -44,8 +45,6 @@ from siggen.sensors.registry import SensorSection
 BLOCK = 20
 """Specimens per block in which the splits are met exactly."""
 
-
-CONFIG_NAME = AllowedText("lower-case letters, digits, - and _, beginning with a letter or a digit, at most 200")
 
 SHARES = "of every 20 gearboxes (or pairs), for fitting, for choosing and for judging"
 
@@ -96,9 +95,7 @@ OPERATING_POINTS = AllowedText("a list of at least one mapping with speed_hz and
 class Config(Section):
     """Everything a data set follows from."""
 
-    name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9_-]{0,199}$"), CONFIG_NAME] = Field(
-        description="name of the set"
-    )
+    name: SetName = Field(description="name of the set")
     seed: Annotated[Whole, Field(ge=0, lt=2**63)] = Field(description="where all randomness begins")
     specimens: Annotated[Whole, Field(ge=1, le=10_000_000)] = Field(
         description="number of gearboxes; not part of the identity"

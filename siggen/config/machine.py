@@ -10,11 +10,9 @@ from siggen.config.dynamics import RotorSection
 from siggen.config.gears import ToothForm, Wheel
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
+from siggen.keys.user_name import PartName
 from siggen.keys.usual import Usual
-from siggen.keys.wording import AllowedText
 
-NAME_TEXT = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 40")
-Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$"), NAME_TEXT]
 IDLER = "idler"
 Span: TypeAlias = Annotated[
     Number | Literal["idler"] | None, Within(above=0, most=2000, words=(IDLER, None)), Usual(5, 3000)
@@ -28,7 +26,7 @@ NAMED: Any = Field(description="its name: in places of sensors, damage, columns,
 class MachineShaft(RotorSection):
     """A shaft on two bearings; masses are those of the gear that the shaft in front drives, of the first its own."""
 
-    name: Name = NAMED
+    name: PartName = NAMED
     span_mm: Span = Field(
         default=None,
         description="distance of the bearings of a shaft with two gears, which stand at its thirds; idler: one gear in "
@@ -39,14 +37,14 @@ class MachineShaft(RotorSection):
 class MachineGear(Wheel):
     """A gear on a shaft."""
 
-    name: Name = NAMED
+    name: PartName = NAMED
     shaft: str = Field(description="name of the shaft that it stands on")
 
 
 class MachineMesh(ToothForm):
     """A gear that drives another one."""
 
-    name: Name = NAMED
+    name: PartName = NAMED
     driver: str = Field(description="name of the driving gear")
     driven: str = Field(description="name of the driven gear")
     direction_deg: Direction = Field(

@@ -54,9 +54,12 @@ def _names(machine: MachineSection) -> Iterator[Problem]:
     for key in MachineSection.model_fields:
         names = [one.name for one in getattr(machine, key)]
         for index, name in enumerate(names):
-            if name in names[:index]:
-                yield Problem(f"machine.{key}.{index}.name", f"'{name}' a second time", "allowed: every name once")
-            if name in TAKEN:
+            alike = [other for other in names[:index] if other.lower() == name.lower()]
+            if alike:
+                received = f"'{name}' a second time" if name in alike else f"'{name}' beside '{alike[0]}'"
+                allowed = "allowed: every name once, whatever its case: readers of columns may not tell"
+                yield Problem(f"machine.{key}.{index}.name", received, allowed)
+            if name.lower() in TAKEN:
                 allowed = f"allowed: another name than {', '.join(TAKEN)}"
                 yield Problem(f"machine.{key}.{index}.name", f"'{name}', which means something else", allowed)
     meshes = [one.name for one in machine.meshes]

@@ -14,15 +14,14 @@ from siggen.faults.registry import COMBINED, DAMAGE, FAULT_WORDS, HEALTHY, KNOWN
 from siggen.keys.by_name import without_key_field
 from siggen.keys.problems import MISSING, refusal
 from siggen.keys.section import Section
+from siggen.keys.user_name import WORD, WORD_TEXT, StateName
 from siggen.keys.wording import AllowedText
 
 SEVERITIES = ("healthy", "slight", "moderate", "severe")
 FAULT = AllowedText(
-    f"with damage {', '.join(FAULT_WORDS[1:])}; with changes a word such as {', '.join(KNOWN_CHANGES)}; "
-    "lower-case letters, digits, - and _"
+    f"with damage {', '.join(FAULT_WORDS[1:])}; with changes a word such as {', '.join(KNOWN_CHANGES)}; {WORD_TEXT}"
 )
 WORDS = {"damage": " or ".join(FAULT_WORDS[1:]), "changes": f"a word such as {', '.join(KNOWN_CHANGES)}"}
-STATE_NAME = AllowedText("lower-case letters, digits, - and _, beginning with a letter, at most 200")
 
 
 def _labels_are_optional(schema: dict[str, Any]) -> None:
@@ -37,15 +36,11 @@ class StateSection(Section):
     key_field: ClassVar[str] = "name"
     model_config = ConfigDict(json_schema_extra=_labels_are_optional)
 
-    name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]{0,199}$"), STATE_NAME] = Field(
-        description="label of the state"
-    )
-    fault: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]{0,199}$"), FAULT] = Field(
+    name: StateName = Field(description="label of the state")
+    fault: Annotated[str, Field(pattern=f"^{WORD}$"), FAULT] = Field(
         description="default: what its kind of damage is called; healthy without damage and changes"
     )
-    severity: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_-]{0,199}$"), STATE_NAME] = Field(
-        description="default: the state's name; healthy without damage"
-    )
+    severity: StateName = Field(description="default: the state's name; healthy without damage")
     grows: str | None = Field(
         default=None,
         description="name of the milder state that it grows from: it contains its damage, and takes over all its keys "

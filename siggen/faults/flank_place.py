@@ -21,6 +21,7 @@ from siggen.keys.distributions import LogUniform, Uniform
 from siggen.keys.number import Number, Within, at, bounds
 from siggen.keys.scaling import Grows
 from siggen.keys.section import Section
+from siggen.keys.user_name import PART
 from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
 from siggen.names import EITHER, SECTIONS, Side
@@ -29,7 +30,7 @@ GEAR_TEXT = AllowedText(
     "one of pinion, gear, either; of a machine the name of a gear, or MESH.either; of planetary sets sun, planet, ring",
     (*SECTIONS, EITHER, "sun", "planet", "ring"),
 )
-AnyGear: TypeAlias = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}(\.[a-z][a-z0-9_]{0,39})?$"), GEAR_TEXT]
+AnyGear: TypeAlias = Annotated[str, Field(pattern=rf"^{PART}(\.{PART})?$"), GEAR_TEXT]
 """`either`: drawn per gearbox, the same for all of its states."""
 
 DAMAGED_GEAR = (

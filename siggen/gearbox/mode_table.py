@@ -28,7 +28,7 @@ from siggen.keys.problems import nearest
 from siggen.names import PAIR, Names
 
 FREQUENCY, DAMPING = "frequency_hz", "damping_ratio"
-SHAPE = re.compile(r"^([a-z][a-z0-9_]*)_(?:(horizontal|vertical|axial)_per_sqrt_kg|(turning)_per_sqrt_kg_m)$")
+SHAPE = re.compile(r"^([A-Za-z][A-Za-z0-9_]*)_(?:(horizontal|vertical|axial)_per_sqrt_kg|(turning)_per_sqrt_kg_m)$")
 DRIVE = ("auxiliary_drive/horizontal", "auxiliary_drive/vertical")
 BASE = ("base_horizontal_sqrt_kg", "base_vertical_sqrt_kg", "base_rocking_sqrt_kg_m")
 COLUMNS_TEXT = f"{FREQUENCY}, {DAMPING}, <place>_<horizontal, vertical or axial>_per_sqrt_kg, {', '.join(BASE)}"

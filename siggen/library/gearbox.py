@@ -15,6 +15,7 @@ from siggen.errors import UsageError
 from siggen.gearbox.design import SetDesign
 from siggen.gearbox.specimen import Specimen
 from siggen.keys.column import Column
+from siggen.keys.user_name import SENSOR, SENSOR_TEXT
 from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.damage import BearingSpall, Damage, DamagedPlace, Wear, entries
 from siggen.library.sensors import DIRECTIONS, Channel, PassedSensor, Sensor, reading_input
@@ -215,10 +216,8 @@ class Gearbox:
     def _channel(self, channel: Channel) -> PassedSensor:
         if not isinstance(channel, Channel):
             raise refused("channels", repr(channel), "objects of Channel")
-        if not (isinstance(channel.name, str) and re.fullmatch("[a-z][a-z0-9_]{0,199}", channel.name)):
-            raise refused(
-                "Channel.name", repr(channel.name), "lower-case letters, digits and _, beginning with a letter"
-            )
+        if not (isinstance(channel.name, str) and re.fullmatch(SENSOR, channel.name)):
+            raise refused("Channel.name", repr(channel.name), SENSOR_TEXT)
         finite("Channel.floor", channel.floor, "at least 0", 0.0)
         found: dict[Input, float] = {}
         plates = []

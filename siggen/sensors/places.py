@@ -11,6 +11,7 @@ from typing import Any
 
 from siggen.errors import Problem
 from siggen.keys.problems import nearest
+from siggen.keys.user_name import PART
 from siggen.names import PAIR, Names
 
 PLATES = "casing, housing.kind: plates"
@@ -23,8 +24,6 @@ ON_CASING = {"casing": ("casing",), PLATES: tuple(PLATE_OF), MODAL: ("casing", *
 """Places on the housing of a model."""
 OF_SET = ("ring", "sun_bearing", "carrier_bearing")
 """Places of a planetary set."""
-NAME = "[a-z][a-z0-9_]{0,39}"
-"""Names of shafts and gears."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +41,7 @@ class PlaceText:
     def __get_pydantic_json_schema__(self, _: Any, __: Any) -> dict[str, Any]:
         """Return the words, or a pattern for those with a name."""
         ending = "_bearing" if self.named.endswith("_bearing") else ""
-        return {"anyOf": [{"enum": list(self.words)}, {"type": "string", "pattern": f"^{NAME}{ending}$"}]}
+        return {"anyOf": [{"enum": list(self.words)}, {"type": "string", "pattern": f"^{PART}{ending}$"}]}
 
 
 BEARINGS = tuple(shaft.bearing for shaft in PAIR.shafts)

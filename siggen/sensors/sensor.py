@@ -21,8 +21,8 @@ from siggen.keys.distributions import DRAWN
 from siggen.keys.number import Each, Number, Within, at, bounds
 from siggen.keys.problems import BRANCHES, refusal
 from siggen.keys.section import Section
+from siggen.keys.user_name import SensorName
 from siggen.keys.usual import Usual
-from siggen.keys.wording import AllowedText
 from siggen.noise.source import Source
 from siggen.seeding import Stream, generator
 from siggen.sensing.inputs import FORCE, Input
@@ -32,9 +32,6 @@ from siggen.sensors.path import MeasuredPath
 from siggen.sensors.places import Places
 from siggen.sensors.quantity import Quantity
 from siggen.sensors.transducer import Transducer
-
-SENSOR_NAME = AllowedText("lower-case letters, digits and _, beginning with a letter, at most 200")
-
 
 SIZE = "size"
 """What `Grows` says of lengths that follow the gearbox, such as a position on its casing."""
@@ -84,9 +81,7 @@ class SensorBase(Section):
     model_config = ConfigDict(json_schema_extra=lambda schema: without_key_field(schema, "name"))
 
     kind: str
-    name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,199}$"), SENSOR_NAME] = Field(
-        description="part of the channel's name"
-    )
+    name: SensorName = Field(description="part of the channel's name")
     place: str = Field(description="where it is mounted")
     axes: Annotated[tuple[str, ...], Field(min_length=1)] = Field(description="what it measures, one channel each")
     gain: Annotated[Number | Each, Within(above=0, each=True), Usual(0.05, 20)] = Field(

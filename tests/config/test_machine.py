@@ -38,7 +38,7 @@ def test_other_names_and_another_order_make_the_same_gearbox() -> None:
 
 def test_gears_that_bear_each_others_usual_names_keep_them_in_columns_labels_and_the_graph() -> None:
     """The driver is called gear and runs on a shaft gear, what it drives is called pinion."""
-    called = {"ida": "gear", "otto": "pinion", "input": "gear", "middle": "pinion"}
+    called = {"ida": "gear", "otto": "pinion", "input": "gear", "middle": "pinion", "eva": "Eva"}
     renamed = {
         part: [{key: called.get(str(value), value) for key, value in one.items()} for one in MACHINE[part]]
         for part in MACHINE
@@ -50,6 +50,7 @@ def test_gears_that_bear_each_others_usual_names_keep_them_in_columns_labels_and
     assert of["teeth", "gear"].name == "teeth_gear"
     assert of["teeth", "gear"].label == "teeth_pinion"  # which the driver of a mesh is inside
     assert of["shaft_hz", "pinion"].name == "pinion_shaft_hz"
+    assert of["teeth", "Eva"].name == "teeth_Eva"
     assert config.config.states[1].damages[0].hit_gear == "gear"
     assert structure(config.gearbox(0)).coordinates[1:4] == ("x_gear", "y_gear", "theta_gear")
 
@@ -89,7 +90,8 @@ MISTAKES: dict[str, tuple[dict[str, Any], str, str]] = {
     "a mesh of no gear": (with_machine("meshes", 0, driver="eve"), "machine.meshes.0.driver", "did you mean 'eva'?"),
     "gears of one shaft": (with_machine("meshes", 0, driven="otto"), "machine.meshes.0.driven", "the shaft middle"),
     "a name twice": (with_machine("gears", 1, name="otto"), "machine.gears.2.name", "every name once"),
-    "a word that is taken": (with_machine("shafts", 1, name="load"), "machine.shafts.1.name", "another name than"),
+    "a name but for its case": (with_machine("gears", 1, name="OTTO"), "machine.gears.2.name", "'otto' beside 'OTTO'"),
+    "a word that is taken": (with_machine("shafts", 1, name="Load"), "machine.shafts.1.name", "another name than"),
     "a gear in no mesh": (beside(ELSE), "machine.gears.4.name", "'else', in 0 meshes"),
     "a gear in three meshes": (
         beside(

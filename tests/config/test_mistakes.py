@@ -192,7 +192,7 @@ MISTAKES = [
         "noise",
         "one that may be 0",
     ),
-    ({"name": "Bad Name"}, "name", "the text 'Bad Name'", "lower-case letters"),
+    ({"name": "Bad Name"}, "name", "the text 'Bad Name'", "letters, digits"),
     ({"specimens": 0}, "specimens", "0", "from 1"),
     ({"splits": {"train": 12, "test": 5}}, "splits", "12 + 4 + 5 = 21", "add up to 20"),
     (
@@ -341,13 +341,13 @@ def test_all_mistakes_are_reported_at_once():
     changes = {
         "seed": "x",
         "gears__modul_mm": 3,
-        "states__X": {},
+        "states__1st": {},
         "sensors__bearing__bits": 99,
         "fs_hz": -1,
         "foo": 1,
     }
     paths = [problem.path for problem in parse(minimal(**changes)).problems]
-    assert sorted(paths) == ["foo", "fs_hz", "gears.modul_mm", "seed", "sensors.bearing.bits", "states.X"]
+    assert sorted(paths) == ["foo", "fs_hz", "gears.modul_mm", "seed", "sensors.bearing.bits", "states.1st"]
 
 
 def test_a_mistake_in_one_state_hides_neither_the_others_nor_what_follows_from_them():

@@ -242,7 +242,7 @@ def test_what_a_law_or_a_gearbox_has_not_is_refused() -> None:
             GearPair.of(**{"teeth": (18, 47), "module_mm": 3, **given})  # type: ignore[arg-type]
     gearbox = siggen.single_stage((23, 61), 2.5)
     for state, said in (
-        (State("X", (Pit(),)), "State.name: received 'X'; allowed: lower-case"),
+        (State("1st", (Pit(),)), "State.name: received '1st'; allowed: letters"),
         (State("healthy"), "State.name: received 'healthy'; allowed: a name that this gearbox has not yet"),
         (State("far", (Pit("sun"),)), "on: received 'sun'; allowed: pinion, gear"),
         (State("far", (siggen.BearingSpall("lid"),)), "on: received 'lid'; allowed: input.bearing, output.bearing"),

@@ -124,7 +124,7 @@ def test_sets_and_sensors_that_cannot_be_are_refused() -> None:
         (Gauge("x", (Reading("lid", order=0),)), "Reading.order: received 0; allowed: 0 for the force in a bearing, 2"),
         (Gauge("x", (Reading("input.coupling"),)), "Reading.order: received 2; allowed: 0 of a coupling"),
         (Gauge("x", ()), "Channel.reads: received 0 readings of nothing"),
-        (Gauge("X", (Reading("lid"),)), "Channel.name: received 'X'; allowed: lower-case"),
+        (Gauge("1st", (Reading("lid"),)), "Channel.name: received '1st'; allowed: letters"),
         (Gauge("sensor_1_vertical", (Reading("lid"),)), "Channel.name: received 'sensor_1_vertical'; allowed: a name"),
         (3, "more: received 3; allowed: objects of State, or sensors"),
     ):
