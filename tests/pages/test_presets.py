@@ -110,6 +110,7 @@ def test_healthy_records_of_the_bench_have_sidebands(tmp_path: Path) -> None:
     assert -30.0 < np.median(sideband) < -8.0
 
 
+@pytest.mark.slow  # perfect gears of any set: tests/diagnostics/audit
 def test_the_ideal_set_is_trivially_separable(tmp_path: Path) -> None:
     config = preset("../tests/configs/ideal", ("healthy", "slight", THROUGH), specimens=4, duration_s=0.4)
     siggen.generate(config, tmp_path / "ideal", engine="serial")

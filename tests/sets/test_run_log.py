@@ -70,7 +70,7 @@ def test_every_event_has_the_documented_fields_and_is_json(tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("engine", "workers"),
     [
-        ("processes", 2),
+        pytest.param("processes", 2, marks=pytest.mark.slow),
         pytest.param("dask", 2, marks=pytest.mark.slow),
         pytest.param("ray", 2, marks=pytest.mark.slow),
     ],

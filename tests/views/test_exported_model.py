@@ -155,6 +155,7 @@ def largest(own: list, other: list) -> float:
     return max(float(np.abs(a - b).max() / np.ptp(a)) for a, b in zip(own, other, strict=True))
 
 
+@pytest.mark.slow  # below one of a casing; the law itself: tests/dynamics/mesh/test_law_independently.py
 def test_scipy_gives_the_motion_of_a_damaged_misaligned_record_of_bench_from_its_file_alone() -> None:
     # As shipped, with varying speed and torque, unbalance, tones, coupling, friction and tilt; record 6 is spalled over
     # 95 % of the face, and its tooth 16 comes after 7 ms. Eight steps per sample leave 6e-4 of the mesh force.

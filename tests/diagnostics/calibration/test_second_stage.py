@@ -97,7 +97,9 @@ def test_a_stage_whose_three_lines_one_channel_shows_is_found() -> None:
     assert (found.shaft, found.teeth) == ("gear", 25)
 
 
-@pytest.mark.parametrize("resonant_order", [12.1, 13.0, pytest.param(31.4, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "resonant_order", [12.1, *(pytest.param(order, marks=pytest.mark.slow) for order in (13.0, 31.4))]
+)
 def test_a_resonance_of_the_housing_is_no_stage(resonant_order: float) -> None:
     for seed in range(20, 24):
         channels = records(seed, (18, 47), None, resonant_order)

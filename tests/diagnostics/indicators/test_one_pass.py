@@ -72,6 +72,7 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
     return calls
 
 
+@pytest.mark.slow  # trains and audits; that a kept table is read back is asked below
 def test_ranking_training_audit_and_features_resample_and_average_once_per_record_and_channel(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -209,6 +209,7 @@ def test_stiffness_that_cannot_be_computed_becomes_a_note(folder: Path) -> None:
     assert any("--no-cnn" in note for note in notes)
 
 
+@pytest.mark.slow  # trains everything once more, a network too
 def test_seven_revolutions_and_no_validation_specimens_still_train_every_classifier(
     make_dataset: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

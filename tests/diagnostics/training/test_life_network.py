@@ -49,6 +49,7 @@ def test_the_same_seed_gives_the_same_quantiles_to_the_last_bit(monkeypatch: pyt
     np.testing.assert_array_equal(errors(told=True)[2], errors(told=True)[2])
 
 
+@pytest.mark.slow  # trains it once more
 def test_averages_that_tell_nothing_leave_about_what_age_tells() -> None:
     network_h, age_h, _ = errors(told=False)
     assert network_h < 1.1 * age_h

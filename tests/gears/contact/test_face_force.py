@@ -54,6 +54,12 @@ def test_a_face_of_nine_depths_is_one_per_cent_stiffer_than_an_endless_line():
 SOFT = {"teeth": BENDING, "rest": 0.25 * REST}
 
 
+@pytest.fixture(scope="module")
+def whole():
+    """Approach of whole faces under 1200 N in three dimensions."""
+    return approach_at(FaceCase(cell_m=0.05e-3), np.ones(400, bool), 1200.0)[0]
+
+
 @pytest.mark.parametrize(
     ("name", "land_of", "room"),
     [
@@ -65,11 +71,10 @@ SOFT = {"teeth": BENDING, "rest": 0.25 * REST}
         ("16 pits", lambda case: land_of_pits(case, 16), 0.6),
     ],
 )
-def test_the_loss_of_pair_stiffness_against_three_dimensions(name, land_of, room):
+def test_the_loss_of_pair_stiffness_against_three_dimensions(name, land_of, room, whole):
     # percentage points; the model's target is 2 for all of them
     force, case = 1200.0, FaceCase(cell_m=0.1e-3)
     fine = replace(case, cell_m=0.05e-3)
-    whole, _ = approach_at(fine, np.ones(400, bool), force)
     damaged, _ = approach_at(fine, land_of(fine), force, reach=5.0)
     expected = 100.0 * (1.0 - (REST + whole / force) / (REST + damaged / force))
     never = face(~land_of(case), 1.0, 1.0)
