@@ -54,7 +54,7 @@ def test_every_gear_has_the_column_with_its_teeth_in_the_names_of_the_user() -> 
 
 
 def test_gears_that_differ_within_a_set_have_no_teeth_and_no_turns_in_the_manifest() -> None:
-    train = set_columns(load_config("families")).drivetrain
+    train = set_columns(load_config("families", ["gears.pairs.count=3"])).drivetrain
     assert {gear.teeth for gear in train.gears} == {None}
     assert [shaft.turns for shaft in train.shafts] == [None, None]
 

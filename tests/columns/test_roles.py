@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import pyarrow as pa
@@ -11,6 +12,7 @@ import siggen
 from siggen.columns.record import damage_schema, listed_columns, record_schema
 from siggen.dataset.seal import sealed, unsealed
 from siggen.errors import DatasetError
+from siggen.gearbox.design import SetDesign
 from siggen.keys.column import Role
 from siggen.sets.drawn import set_columns
 from tests.dataset.fake_set import copy_fake_set, fake_config
@@ -23,9 +25,14 @@ def role(schema: pa.Schema, name: str) -> str:
     return str((schema.field(name).metadata or {}).get(b"role", b"").decode())
 
 
+@cache
+def loaded(preset: str) -> SetDesign:
+    return siggen.load_config(ROOT / "configs" / preset)
+
+
 @pytest.mark.parametrize("preset", PRESETS)
 def test_every_column_of_records_and_of_damage_has_a_role(preset: str) -> None:
-    config = siggen.load_config(ROOT / "configs" / preset)
+    config = loaded(preset)
     for schema in (record_schema(set_columns(config)), damage_schema(set_columns(config))):
         assert {name for name in schema.names if role(schema, name) not in set(Role)} == set()
 
@@ -35,12 +42,12 @@ NEVER_FOR_SCORES = {"paper_a.yaml", "paper_b.yaml"}
 
 @pytest.mark.parametrize("preset", [name for name in PRESETS if name not in NEVER_FOR_SCORES])
 def test_every_preset_for_scores_has_a_sham_unless_it_runs_to_failure(preset: str) -> None:
-    config = siggen.load_config(ROOT / "configs" / preset)
+    config = loaded(preset)
     assert any(state.sham for state in config.config.states) != config.lives
 
 
 def test_what_the_simulation_alone_knows_is_neither_condition_nor_measured() -> None:
-    schema = record_schema(set_columns(siggen.load_config(ROOT / "configs" / "bench.yaml")))
+    schema = record_schema(set_columns(loaded("bench.yaml")))
     usable = {name for name in schema.names if role(schema, name) in {Role.CONDITION, Role.MEASURED}}
     assert {"speed_hz", "torque_nm", "teeth_pinion", "clipped_share_lid_vertical"} <= usable
     hidden = {"fault", "sham", "damaged_area_mm2", "mesh_stiffness_loss", "snr_lid_vertical_db", "start_angle_rad"}

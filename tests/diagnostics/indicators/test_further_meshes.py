@@ -71,7 +71,7 @@ def test_orders_and_turns_of_every_mesh_are_those_that_the_set_stores() -> None:
 
 
 def test_teeth_of_a_record_take_the_place_of_those_that_differ_within_a_set() -> None:
-    drawn = set_columns(load_config("families")).drivetrain
+    drawn = set_columns(load_config("families", ["gears.pairs.count=3"])).drivetrain
     (mesh,) = meshes_of(with_teeth(drawn, {"pinion": 23, "gear": 61}))
     assert (mesh.names, mesh.teeth) == (PAIR[0], (23, 61))
 
