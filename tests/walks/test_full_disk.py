@@ -18,8 +18,8 @@ from tests.walks.walking import run
 
 WRITERS = [name for name, line in LINES.items() if line.writes]
 QUICK = {
-    *("siggen generate", "siggen extend", "siggen merge", "siggen simulate", "siggen inspect flank"),
-    *("siggen-diagnostics check", "siggen-diagnostics score", "siggen-diagnostics bench board"),
+    *("siggen generate", "siggen extend", "siggen simulate", "siggen inspect flank"),
+    *("siggen-diagnostics score", "siggen-diagnostics bench board"),
 }
 """Sets, tables, pictures, pages: each kind of file once."""
 RUN_FILES = {"run.json", "audit.json"}

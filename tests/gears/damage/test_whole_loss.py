@@ -96,7 +96,7 @@ chains = st.lists(
 )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(chains, chains)
 def test_a_stretch_that_a_dense_search_finds_is_found(on_pinion, on_gear):
     at = {which: float(height_mm(which, PAIR.pitch_point_m)) for which in ("pinion", "gear")}

@@ -20,7 +20,7 @@ SLACK = 1.0 + 1e-9
 """Rounding: sums of numbers near their limit."""
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(
     st.sampled_from([PAIR, SMALL]),
     st.sampled_from(["pinion", "gear"]),

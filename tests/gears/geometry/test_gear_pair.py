@@ -178,7 +178,7 @@ def test_undercut_is_a_problem_only_when_it_reaches_the_flank_in_contact():
     assert geometry_problems(slightly) == ()
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(
     st.integers(-3, 200),
     st.one_of(st.floats(-3, 3), st.just(nan)),
