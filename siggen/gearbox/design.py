@@ -224,7 +224,7 @@ class SetDesign:
         """Return all keys with their defaults, as plain mappings and lists; reading them gives an equal design."""
         return self.config.canonical()
 
-    @property
+    @cached_property
     def text(self) -> str:
         """The configuration that a set stores: `canonical` as YAML."""
         return yaml_text(self.canonical())
