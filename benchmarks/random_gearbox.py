@@ -19,10 +19,10 @@ LENGTHS_MM = {
     "gears.face_width_mm": 20.0,
     "gears.pinion.bore_radius_mm": 10.0,
     "gears.gear.bore_radius_mm": 15.0,
-    "dynamics.shafts.pinion.bearing_span_mm": 90.0,
-    "dynamics.shafts.gear.bearing_span_mm": 90.0,
-    "dynamics.shafts.pinion.diameter_mm": 40.0,
-    "dynamics.shafts.gear.diameter_mm": 42.0,
+    "dynamics.shafts.driver.bearing_span_mm": 90.0,
+    "dynamics.shafts.driven.bearing_span_mm": 90.0,
+    "dynamics.shafts.driver.diameter_mm": 40.0,
+    "dynamics.shafts.driven.diameter_mm": 42.0,
 }
 SPALL = "kind: irregular, gear: pinion, teeth: 1, centre_height_mm: below_pitch, face_share: 1.0"
 SPALL_MM, STIFFNESS_N_PER_M = 1.5, 2e8
@@ -53,7 +53,7 @@ def random_config(number: int) -> SetDesign | None:
         "mesh_harmonics": "3",
     }
     for gear in ("pinion", "gear"):
-        values |= {f"dynamics.{gear}.bearing_stiffness_{axis}_n_per_m": f"{STIFFNESS_N_PER_M * size}" for axis in "xy"}
+        values[f"dynamics.{gear}.bearing.stiffness_n_per_m"] = f"{STIFFNESS_N_PER_M * size}"
         values |= {f"dynamics.{gear}.{name}": "null" for name in ("mass_kg", "inertia_kg_m2")}
     try:
         return shipped(PRESET, *(f"{name}={value}" for name, value in values.items()))

@@ -39,6 +39,8 @@ class Side(StrEnum):
 
 PINION, GEAR = SECTIONS = (Side.DRIVER.value, Side.DRIVEN.value)
 """What sections of the configuration call the gears of a mesh, and the shafts of a pair."""
+SHAFT_OF = {PINION: "driver", GEAR: "driven"}
+"""Gear of the first mesh -> key of its shaft in `dynamics.shafts`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,13 +170,6 @@ class Names:
             found |= {mesh.driver.body: driving, mesh.driven.body: driven}
         return {**found, "load": of_shafts[-1]}
 
-    def inner_path(self, path: str) -> str:
-        """Return a key of the user as sections have it, such as one that a state changes."""
-        for inner, own in self.paths:
-            if path.startswith(f"{own}."):
-                return f"{inner}{path.removeprefix(own)}"
-        return path
-
     def own_path(self, path: str) -> str:
         """Return a key of sections as the user wrote it."""
         for inner, own in sorted(self.paths, key=lambda table: -len(table[0])):
@@ -184,11 +179,7 @@ class Names:
 
     def problem(self, problem: Problem) -> Problem:
         """Return a problem at the key that the user wrote."""
-        if not self.given:
-            return problem
-        path = self.own_path(problem.path)
-        before, changes, below = path.partition(".changes.")
-        return replace(problem, path=f"{before}{changes}{self.own_path(below)}" if changes else path)
+        return replace(problem, path=self.own_path(problem.path))
 
 
 PAIR = Names(

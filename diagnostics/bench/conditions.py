@@ -37,7 +37,7 @@ OTHER_FAULTS = {
 
 TEETH = ((20, 51), (22, 45), (23, 37), (24, 61))
 PAIRS = [{"teeth": list(teeth), "module_mm": 3.0, "face_width_mm": 20.0} for teeth in TEETH]
-SHAFTS = {"shafts": {"pinion": {"diameter_mm": [30.0, 38.0]}}}
+SHAFTS = {"shafts": {"driver": {"diameter_mm": [30.0, 38.0]}}}
 """Diameters for 18 teeth, which grow with the pair: 45 mm would not fit the root circles of all."""
 CONDITIONS: Mapping[str, Mapping[str, Any]] = {
     "same": {},

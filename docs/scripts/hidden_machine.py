@@ -38,12 +38,11 @@ def machine(number: int, folder: Path) -> dict[str, Any]:
     def rotor(mass: float, inertia: float) -> dict[str, Any]:
         kg, k = mass * log(0.6, 1.7), log(0.7e8, 5e8)
         damping = 2.0 * rng.uniform(0.02, 0.05) * np.sqrt(k * kg)
-        axes = {f"bearing_stiffness_{axis}_n_per_m": k * rng.uniform(0.7, 1.4) for axis in "xy"}
+        axes = [k * rng.uniform(0.7, 1.4) for _ in "xy"]
         return {
             "mass_kg": kg,
             "inertia_kg_m2": inertia * log(0.6, 1.7),
-            **axes,
-            **{f"bearing_damping_{axis}_n_s_per_m": float(damping) for axis in "xy"},
+            "bearing": {"stiffness_n_per_m": {"each": axes}, "damping_n_s_per_m": float(damping)},
         }
 
     relief = rng.uniform(3.0, 15.0)

@@ -27,9 +27,9 @@ BEARING = {axis: f"bearing_force_pinion_bearing_{axis}_n" for axis in ("vertical
 CONSTANTS = [
     "specimens=1", "manufacture=null", "dynamics.shafts=null",
     "dynamics.mesh_damping_ratio=0.07", "dynamics.backlash_um=80", "dynamics.mesh.tip_relief_um=8",
-    *(f"dynamics.{gear}.bearing_stiffness_{axis}_n_per_m=2e8" for gear in ("pinion", "gear") for axis in "xy"),
-    *(f"dynamics.pinion.bearing_damping_{axis}_n_s_per_m=850" for axis in "xy"),
-    *(f"dynamics.gear.bearing_damping_{axis}_n_s_per_m=1470" for axis in "xy"),
+    *(f"dynamics.{gear}.bearing.stiffness_n_per_m=2e8" for gear in ("pinion", "gear")),
+    "dynamics.pinion.bearing.damping_n_s_per_m=850",
+    "dynamics.gear.bearing.damping_n_s_per_m=1470",
     "housing.bolts.shear_stiffness_n_per_m=8e7", "housing.bolts.axial_stiffness_n_per_m=1.5e8",
     "housing.bolts.damping_ratio=0.04", "dynamics.mesh.structure_damping_ratio=0.04",
     "dynamics.mesh.film_damping_ratio=0.02", "dynamics.mesh.asperity_damping_ratio=0.055",

@@ -28,7 +28,7 @@ This page is printed by `make reference` from `siggen schema`. Begin with
 
 * **Number**, or a limit alone, may be a constant, or a range such as `[1, 2]` from which siggen draws once per gearbox
   ([below](#ranges)).
-* A key of `pinion` stands for that of `gear` too, where the gear has no line of its own.
+* A key of `pinion` or `shafts.driver` stands for that of `gear` or `shafts.driven` too, if that has no line.
 * **extends** names a preset or another file. Mappings are merged key by key, states and sensors by name, all else is
   replaced. A state or sensor that is null is removed; `others: null` takes over none. The set's own `config.yaml` holds
   the result.
@@ -93,7 +93,9 @@ def allowed(schema: Schema, value: Mapping[str, Any]) -> str:
     if value.get("type") == "array":
         return listing(schema, value)
     words = {"integer": "integer", "number": "number", "string": "text", "null": "`null`", "boolean": "yes or no"}
-    words["object"] = "mapping of keys"
+    words["object"] = (
+        "sections by name" if isinstance(value.get("additionalProperties"), Mapping) else "mapping of keys"
+    )
     return f"{words[value['type']]} {limits(value)}".strip()
 
 
@@ -151,10 +153,12 @@ def described(schema: Schema, value: Mapping[str, Any]) -> str:
     return " ".join(str(text).split())
 
 
+TWINS = {"pinion": "gear", "shafts.driver": "shafts.driven"}
+"""Section whose keys stand for those of the other one too."""
 TAKEN_OVER = {
-    "machine.shafts[]": ("dynamics.gear",),
-    "machine.gears[]": ("gears.gear",),
-    "machine.meshes[]": ("gears",),
+    "machine.shafts.NAME": ("dynamics.gear",),
+    "machine.gears.NAME": ("gears.gear",),
+    "machine.meshes.NAME": ("gears",),
 }
 """Section with keys of its own -> the sections whose other keys it repeats with the same meaning."""
 
@@ -232,11 +236,11 @@ def listed(schema: Schema, entry: Entry) -> str | None:
     defaults = "" if entry.defaults == [""] else " / ".join(each or "required" for each in entry.defaults)
     if entry.is_plain(schema):
         return None
-    alike = {name.replace("pinion", "gear") for name in entry.names if "pinion" in name}
+    alike = {name.replace(a, b) for a, b in TWINS.items() for name in entry.names if a in name}
     names = ", ".join(f"`{name}`" for name in entry.names if name not in alike)
     if defaults == "`null`":
         values = values.removesuffix(" or `null`")
-    if (of := TAKEN_OVER.get(f"{first.path}[]")) is not None:
+    if (of := TAKEN_OVER.get(f"{first.path}.NAME")) is not None:
         values += f"; keys as in {' and '.join(f'`{one}`' for one in of)}, beside its own"
     if re.fullmatch(r"Number \S+", values):
         values = values.removeprefix("Number ")

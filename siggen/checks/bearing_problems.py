@@ -14,8 +14,8 @@ from siggen.gearbox.possible import PossibleGearbox
 from siggen.keys.drawing import corners
 from siggen.names import Side
 
-STIFFNESSES = ("bearing_stiffness_x_n_per_m", "bearing_stiffness_y_n_per_m")
-"""Keys of a shaft's section that its `bearing` replaces."""
+STIFFNESS = "stiffness_n_per_m"
+"""Key of a `bearing` that its `geometry` replaces."""
 
 
 def bearing_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
@@ -26,11 +26,11 @@ def bearing_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
         if crowded:
             received = f"{crowded[0].balls} balls of {1e3 * crowded[0].ball_diameter_m:g} mm"
             allowed = f"allowed: below {1e3 * crowded[0].room_m:.4g} mm, the distance of two balls' centres"
-            yield Problem(f"dynamics.{role}.bearing.ball_diameter_mm", received, allowed)
+            yield Problem(f"dynamics.{role}.bearing.geometry.ball_diameter_mm", received, allowed)
         else:
             yield from _spall_problems(gearbox, f"{role}_bearing", given or [BallGeometry().bearing()])
         if given:
-            yield from _change_problems(gearbox, f"dynamics.{role}")
+            yield from _change_problems(gearbox, gearbox.config.names.own_path(f"dynamics.{role}.bearing"))
 
 
 def _spall_problems(gearbox: PossibleGearbox, place: str, bearings: list[BallBearing]) -> Iterator[Problem]:
@@ -43,11 +43,11 @@ def _spall_problems(gearbox: PossibleGearbox, place: str, bearings: list[BallBea
 
 def _change_problems(gearbox: PossibleGearbox, at: str) -> Iterator[Problem]:
     """Yield changes of states to a stiffness that a bearing replaces: such a state would be healthy by another name."""
-    unused = [f"{at}.{key}" for key in STIFFNESSES]
     for state in gearbox.config.states:
         for change in state.changes:
-            if change.path in unused:
-                allowed = f"allowed: changes of {at}.bearing.clearance_um, or {at}.bearing: null"
-                yield Problem(
-                    f"states.{state.name}.changes.{change.path}", f"a key that {at}.bearing stands in place of", allowed
+            if change.path == f"{at}.{STIFFNESS}":
+                path, received = (
+                    f"states.{state.name}.changes.{change.path}",
+                    f"a key that {at}.geometry stands in place of",
                 )
+                yield Problem(path, received, f"allowed: changes of {at}.geometry.clearance_um, or {at}.geometry: null")

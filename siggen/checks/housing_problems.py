@@ -22,7 +22,7 @@ from siggen.gearbox.housing_numbers import PlateNumbers
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.number import HIGH, LOW, Number, bounds, constant
-from siggen.names import Side
+from siggen.names import SHAFT_OF, Side
 
 THICKEST = 0.25
 """Thickness of a wall over the least inner length of its box; a thicker one is no plate."""
@@ -47,7 +47,7 @@ def housing_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
         shafts = gearbox.shafts(lambda _: HIGH)
         contents, proportions, _ = specimen_layout(most, shafts, pair)
         if shafts is not None:
-            yield from _bearing_problems({role: getattr(shafts, role).diameter_mm for role in Side}, pair)
+            yield from _bearing_problems({role: constant(shafts.of(role).diameter_mm) for role in Side}, pair)
         yield from _problems(least, most, contents, proportions.wall_m)
 
 
@@ -70,7 +70,7 @@ def _bearing_problems(diameters_mm: Mapping[str, float], pair: GearPair) -> Iter
     if sum(diameters_mm.values()) > most_mm:
         received = f"{diameters_mm[thicker]:g}, with the other shaft {sum(diameters_mm.values()):g} mm together"
         allowed = f"allowed: at most {most_mm:.4g} mm together, so that both bearings fit into one wall of the housing"
-        yield Problem(f"dynamics.shafts.{thicker}.diameter_mm", received, allowed)
+        yield Problem(f"dynamics.shafts.{SHAFT_OF[thicker]}.diameter_mm", received, allowed)
 
 
 def _least(contents: Contents, wall_m: float) -> Iterator[Least]:
@@ -81,7 +81,7 @@ def _least(contents: Contents, wall_m: float) -> Iterator[Least]:
     lid = bounds(PlateNumbers.model_fields["lid"].default)[0]
     above_m = max(CLEARANCE_M, height_for_bearings_m(contents, wall_m, lid))
     yield Least("height_mm", 2.0 * tip_m + above_m / ABOVE_SHARE, "the larger gear, a third of the rest above it")
-    yield Least("width_mm", contents.face_width_m + 2.0 * CLEARANCE_M, "the gears' faces (gears.face_width_mm)")
+    yield Least("width_mm", contents.face_width_m + 2.0 * CLEARANCE_M, "the gears' faces (face_width_mm)")
 
 
 def _inner_m(numbers: PlateNumbers, contents: Contents) -> Iterator[float]:

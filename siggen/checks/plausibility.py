@@ -202,16 +202,15 @@ class _SizesCompared:
             yield from self.of(f"{at}.mass_kg", f"mass {what}", (0.3, 12.0), hint, disc)
             disc = disc_inertia_kg_m2(gear, pair.face_width_m)
             yield from self.of(f"{at}.inertia_kg_m2", f"inertia {what}", (0.3, 5.0), hint, disc)
-            for axis in "xy":
-                stiffness, damping = f"{at}.bearing_stiffness_{axis}_n_per_m", f"{at}.bearing_damping_{axis}_n_s_per_m"
-                if torque > 0.0 and not number("planetary"):
-                    what, gives_um = "gives way at full load by [µm]", 1e6 * torque * of_torque
-                    yield self.under(stiffness, what, (0.3, 1000.0), "is it in N/m, not N/mm?", gives_um)
-                (low, high), (least, most) = bounds(number(damping)), bounds(number(stiffness))
-                if high > 0.0:
-                    ratios = max(low, 1e-3 * high) / least, high / most
-                    found, what = (min(ratios), max(ratios)), "damping over stiffness [s]"
-                    yield UsualQuantity(damping, what, found, 5e-7, 2e-4, "is it in N s/m?")
+            stiffness, damping = f"{at}.bearing.stiffness_n_per_m", f"{at}.bearing.damping_n_s_per_m"
+            if torque > 0.0 and not number("planetary"):
+                what, gives_um = "gives way at full load by [µm]", 1e6 * torque * of_torque
+                yield self.under(stiffness, what, (0.3, 1000.0), "is it in N/m, not N/mm?", gives_um)
+            (low, high), (least, most) = bounds(number(damping)), bounds(number(stiffness))
+            if high > 0.0:
+                ratios = max(low, 1e-3 * high) / least, high / most
+                found, what = (min(ratios), max(ratios)), "damping over stiffness [s]"
+                yield UsualQuantity(damping, what, found, 5e-7, 2e-4, "is it in N s/m?")
 
     def ends(self) -> Iterator[UsualQuantity]:
         """Yield couplings and machines at both ends."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import degrees
 
-from siggen.checks.bearing_problems import STIFFNESSES
+from siggen.checks.bearing_problems import STIFFNESS
 from siggen.checks.tilt_problems import flank_tilts
 from siggen.gearbox.configured import state_config
 from siggen.gearbox.draw import draw_specimen
@@ -33,7 +33,7 @@ def shaft_notes(gearbox: PossibleGearbox) -> Iterator[str]:
                 f"{1e6 * tilts.largest_rad:.0f} urad; at {1e6 * tilts.limit_rad:.0f} an end meets the other flank: "
                 "such gearboxes end as outside_model; stiffer bearings, or a gear_position nearer to 0.5, prevent it"
             )
-    if any(getattr(dynamics, role).bearing is not None for role in Side):
+    if any(getattr(dynamics, role).bearing.geometry is not None for role in Side):
         yield from _bearing_notes(gearbox)
 
 
@@ -41,13 +41,12 @@ def _bearing_notes(gearbox: PossibleGearbox) -> Iterator[str]:
     """Yield the stiffness of both bearings of each such shaft of gearbox 0, and that of states that change it."""
     config = gearbox.config
     for role in Side:  # a preset that a file extends may have given them
-        rotor = getattr(config.dynamics, role)
-        given = [key for key in STIFFNESSES if key in rotor.model_fields_set]
-        if rotor.bearing is not None and given:
-            at = config.names.own_path(f"dynamics.{role}.bearing").removesuffix(".bearing")
+        bearing = getattr(config.dynamics, role).bearing
+        if bearing.geometry is not None and STIFFNESS in bearing.model_fields_set:
+            at = config.names.own_path(f"dynamics.{role}.bearing")
             yield (
-                f"{' and '.join(f'{at}.{key}' for key in given)}: not used: {at}.bearing has a stiffness by load; "
-                f"{at}.bearing: null takes the given one"
+                f"{at}.{STIFFNESS}: not used: {at}.geometry has a stiffness by load; "
+                f"{at}.geometry: null takes the given one"
             )
     found = dict(_bearings(draw_specimen(config, 0)))
     yield from (f"{key}: {text}" for key, text in found.items())

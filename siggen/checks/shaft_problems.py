@@ -8,7 +8,7 @@ from siggen.errors import Problem
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import corners
-from siggen.names import Side
+from siggen.names import SHAFT_OF, Side
 
 
 def shaft_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
@@ -36,9 +36,9 @@ def _of_shaft(gearbox: PossibleGearbox, side: Side, pair: GearPair) -> Iterator[
     half_mm = 0.5e3 * pair.face_width_m
     if nearer_mm < half_mm:
         places = f"gear_position {min(shares):g} to {max(shares):g} a bearing {nearer_mm:g} mm from the middle"
-        allowed = f"allowed: bearings beside the gear, at least {half_mm:g} mm from its middle (gears.face_width_mm)"
-        yield Problem(f"dynamics.shafts.{side}.bearing_span_mm", f"{least_mm:g}, with {places}", allowed)
+        allowed = f"allowed: bearings beside the gear, at least {half_mm:g} mm from its middle (face_width_mm)"
+        yield Problem(f"dynamics.shafts.{SHAFT_OF[side]}.bearing_span_mm", f"{least_mm:g}, with {places}", allowed)
     thickest_mm, root_mm = 1e3 * max(one.diameter_m for one in shafts), 2e3 * pair.member(side).root_radius_m
     if thickest_mm >= root_mm:
         allowed = f"allowed: less than the root diameter of its gear, {root_mm:.4g} mm"
-        yield Problem(f"dynamics.shafts.{side}.diameter_mm", f"{thickest_mm:g}", allowed)
+        yield Problem(f"dynamics.shafts.{SHAFT_OF[side]}.diameter_mm", f"{thickest_mm:g}", allowed)

@@ -49,7 +49,9 @@ def _changed_problems(gearbox: PossibleGearbox, number: int, known: Collection[s
 
 
 def _every(gearbox: PossibleGearbox) -> list[Problem]:
-    return [*gearbox.contradictions(), *physical_problems(gearbox)]
+    """Return all problems, each at the key that the user wrote."""
+    names = gearbox.config.names
+    return [names.problem(problem) for problem in (*gearbox.contradictions(), *physical_problems(gearbox))]
 
 
 def _columns(gearbox: PossibleGearbox) -> dict[str, bool]:

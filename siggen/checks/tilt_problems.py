@@ -31,7 +31,7 @@ from siggen.gears.contact.table_columns import approach_under_m
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.keys.drawing import Uniforms, corners
 from siggen.keys.number import MIDDLE
-from siggen.names import Side
+from siggen.names import SHAFT_OF, Side
 from siggen.specimen.loaded_bearings import BEARINGS, on_loaded_bearing, shaft_load_n
 
 PLACES = (0.125, 0.375, 0.625, 0.875)
@@ -80,7 +80,7 @@ def flank_tilts(gearbox: PossibleGearbox, pair: GearPair) -> FlankTilts:
     ends = []
     for side in Side:
         shafts = corners(gearbox.shaft(side, pair))
-        bearings = corners(partial(_bearing, gearbox, side, pair), "stiffness_x", "stiffness_y", ".bearing.")
+        bearings = corners(partial(_bearing, gearbox, side, pair), ".stiffness_n_per_m.", ".geometry.")
         tilts = [static_tilt_rad(*one, pair, side, torque_nm) for one in product(shafts, bearings)]
         ends.append((min(tilts), max(tilts)))
     low, high = (sum(each) for each in zip(*ends, strict=True))
@@ -137,14 +137,14 @@ def _tilt_per_n(beam: Shaft, bearing_n_per_m: float, lever_m: float) -> float:
 def _problem(gearbox: PossibleGearbox, pair: GearPair, tilts: FlankTilts) -> Problem:
     """Return what is wrong with the worse shaft, and the least diameter that would do beside the other one as it is."""
     limit, side = tilts.limit_rad, max(Side, key=lambda one: float(np.median(np.abs(tilts.over_places_rad[one]()))))
-    path = f"dynamics.shafts.{side}.diameter_mm"
+    own_path, bearing = gearbox.config.names.own_path, f"dynamics.{side}.bearing.stiffness_n_per_m"
+    path = f"dynamics.shafts.{SHAFT_OF[side]}.diameter_mm"
     thin_m = min(shaft.diameter_m for shaft in corners(gearbox.shaft(side, pair)))
     thick_m = 2.0 * pair.member(side).root_radius_m
     received = (
-        f"{gearbox.written(path)}, with which the flanks tilt by {1e6 * tilts.median_rad():.0f} urad under "
-        f"{gearbox.largest_torque_nm:g} N m, with gears.youngs_modulus_gpa {pair.youngs_modulus_pa / 1e9:g} and "
-        f"dynamics.{side}.bearing_stiffness_x_n_per_m "
-        f"{gearbox.written(f'dynamics.{side}.bearing_stiffness_x_n_per_m')}"
+        f"{gearbox.written(path)}, with side the flanks tilt by {1e6 * tilts.median_rad():.0f} urad under "
+        f"{gearbox.largest_torque_nm:g} N m, with {own_path('gears.youngs_modulus_gpa')} "
+        f"{pair.youngs_modulus_pa / 1e9:g} and {own_path(bearing)} {gearbox.written(bearing)}"
     )
     allowed = f"allowed: a tilt of at most {1e6 * limit:.0f} urad, where an end of the face meets the other flank"
     if tilts.median_rad(**{side: thick_m}) > limit:

@@ -12,18 +12,31 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import BeforeValidator, PlainSerializer, ValidationError, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+from siggen.config.short_form import drivetrain
 from siggen.errors import Problem
 from siggen.keys.distributions import DRAWN, Changed
+from siggen.keys.former_keys import former_key
 from siggen.keys.number import Each, Number, Within, at
-from siggen.keys.problems import joined, nearest, received_text, refusal, refused_problems, section_problems
+from siggen.keys.problems import (
+    joined,
+    nearest,
+    received_text,
+    refusal,
+    refused_problems,
+    section_problems,
+    unknown_keys,
+)
 from siggen.keys.section import Section
-from siggen.keys.wording import AllowedText
+from siggen.keys.wording import AllowedText, keys_of
+from siggen.names import Side
 
 SECTIONS = ("dynamics", "housing", "background", "variation", "manufacture", "sensors")
 """Where a state may change keys; what lies elsewhere is what records of all states share, or what names them."""
+SHAFTS = "machine.shafts"
+"""Where it may change those of a machine."""
 WORDS = ("oil",)
 """Keys that hold a word and may be changed; all others hold numbers."""
-FIXED = ("position_mm", "integration_tolerance", "steps_per_sample")
+FIXED = ("position_mm", "span_mm", "integration_tolerance", "steps_per_sample")
 """Numbers that say where a channel is or how it is computed."""
 HOW = ("times", "add")
 ALLOWED = "a number, a range such as [1, 2], {times: x} or {add: x}"
@@ -106,12 +119,21 @@ def changed_sections(sections: Mapping[str, Any], changes: Sequence[Change]) -> 
         With the key's path, where a key is none or may not become that.
     """
     found: dict[str, Any] = {}
+    machine = sections.get("machine")
+    known = SECTIONS if machine is None else (SHAFTS, *SECTIONS)
     for one in changes:
         name, *below = one.path.split(".")
-        if name not in SECTIONS or not below:
+        if not below or not one.path.startswith(tuple(f"{key}." for key in known)):
             near = nearest(one.path, _paths(sections)) if name not in sections else ""
-            raise _refused(one, f"allowed: keys below {', '.join(SECTIONS)}; all else is the same in all states{near}")
+            allowed = f"allowed: keys below {', '.join(known)}; all else is the same in all states{near}"
+            raise _refused(one, former_key(name) or allowed)
+        if machine is not None and name == "dynamics" and below[0] in tuple(Side):
+            raise _refused(one, f"allowed with a machine: keys below {SHAFTS}")
         found[name] = _replaced({**sections, **found}.get(name), below, one)
+    if "machine" in found:
+        _, stages, rotors = drivetrain(found["machine"])
+        dynamics = found.get("dynamics", sections.get("dynamics"))
+        found |= {"stages": stages, **({} if dynamics is None else {"dynamics": dynamics.model_copy(update=rotors)})}
     return found
 
 
@@ -123,8 +145,9 @@ def _replaced(value: Any, parts: Sequence[str], change: Change) -> Any:
         raise _refused(change, "allowed: keys of sections that the file has; this one is null")
     name, *below = parts
     fields = type(value).model_fields
-    if name not in fields:
-        raise _refused(change, f"there is no such key{nearest(name, [*fields]) or ';'} known keys: {', '.join(fields)}")
+    if name not in keys_of(type(value)):
+        (problem,) = unknown_keys([(change.path.removesuffix(".".join(("", *below))), None)], keys_of(type(value)))
+        raise _refused(change, problem.allowed)
     own = getattr(value, name)
     new = _replaced(own, below, change) if below else _leaf(value, name, own, change)
     try:
@@ -135,7 +158,7 @@ def _replaced(value: Any, parts: Sequence[str], change: Change) -> Any:
 
 
 def _in_list(entries: Any, parts: Sequence[str], change: Change) -> Any:
-    """Return sensors of which that of a name is changed."""
+    """Return sensors or shafts of which that of a name is changed."""
     named = dict(entries) if isinstance(entries, Mapping) else {one.name: one for one in entries}
     if parts[0] not in named or len(parts) == 1:
         raise _refused(change, f"allowed: a key of one of {', '.join(named)}{nearest(parts[0], [*named])}")
@@ -147,7 +170,9 @@ def _leaf(section: Section, name: str, own: Any, change: Change) -> Any:
     """Return what a key becomes."""
     field = type(section).model_fields[name]
     numeric = isinstance(own, float) or any(isinstance(mark, Within) for mark in field.metadata)
-    if name in FIXED or not (numeric or name in WORDS):
+    if name in FIXED:
+        raise _refused(change, "allowed: other keys; this one is the same in all states")
+    if not (numeric or name in WORDS):
         raise _refused(change, "allowed: keys with numbers of the machine or of a sensor, and dynamics.friction.oil")
     if change.how == "to":
         return change.value

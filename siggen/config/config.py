@@ -22,7 +22,7 @@ from siggen.config.life import Life
 from siggen.config.machine import MachineSection
 from siggen.config.manufacture import Manufacture
 from siggen.config.planetary import Planetary
-from siggen.config.short_form import names_in, own_form
+from siggen.config.short_form import names_in, without_inner
 from siggen.config.stages import Stage
 from siggen.config.states import StateSection, changes_of, grown_from
 from siggen.config.stiffness import Stiffness
@@ -216,7 +216,7 @@ class Config(Section):
         if not self.states:  # which no file may give beside a section life
             del found["states"]
         if self.machine is not None:
-            return own_form(found, self.names)
+            return without_inner(found)
         del found["machine"]
         return found
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from siggen.config.mesh import Friction, MeshSection
 from siggen.faults.ball_geometry import BallGeometry
-from siggen.keys.number import Number, Within
+from siggen.keys.number import Each, Number, Within
 from siggen.keys.section import Section, Whole
 from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
+from siggen.names import SHAFT_OF
 
 
 class ShaftSection(Section):
@@ -28,10 +28,15 @@ class ShaftSection(Section):
 
 
 class Shafts(Section):
-    """Shafts of both gears; bearing stiffnesses of `dynamics.pinion` and `dynamics.gear` are those of both bearings."""
+    """Shafts of both gears; bearing stiffnesses of these shafts are those of both bearings."""
 
-    pinion: ShaftSection = Field(default=ShaftSection(), description="shaft of the pinion")
-    gear: ShaftSection = Field(default=ShaftSection(), description="shaft of the gear")
+    driver: ShaftSection = Field(default=ShaftSection(), description="shaft of the driving gear")
+    driven: ShaftSection = Field(default=ShaftSection(), description="shaft of the driven gear")
+
+    def of(self, role: str) -> ShaftSection:
+        """Return the shaft of the pinion or of the gear."""
+        shaft: ShaftSection = getattr(self, SHAFT_OF[role])
+        return shaft
 
 
 class UnbalanceSection(Section):
@@ -43,20 +48,32 @@ class UnbalanceSection(Section):
     )
 
 
-BEARINGS = (
-    "both bearings of the shaft, horizontal (x) and vertical (y), where x counts for y too unless that is given; "
-    "along it (z), where helical teeth push"
-)
-DAMPED = "the same; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
-ALIKE = {
-    f"bearing_{what}_y_{unit}": f"bearing_{what}_x_{unit}"
-    for what, unit in (("stiffness", "n_per_m"), ("damping", "n_s_per_m"))
-}
-"""Key of the vertical direction -> that of the horizontal one, whose value it has where it is not given."""
 MACHINE = "of the machine that drives, or is driven"
 RATED = "rated_torque_nm"
 """Key from which the sizes follow that a file leaves out."""
 RATED_TEXT = AllowedText("a number above 0 up to 1e+06, or null")
+
+
+ACROSS = "across the shaft; {each: [horizontal, vertical]} gives one for each direction"
+
+
+class BearingSection(Section):
+    """Both bearings of a shaft together; each direction draws its own number."""
+
+    stiffness_n_per_m: Annotated[Number | Each, Within(above=0, each=True, count=2)] = Field(
+        default=2e8, description=ACROSS
+    )
+    damping_n_s_per_m: Annotated[Number | Each, Within(least=0, each=True, count=2)] = Field(
+        default=1000.0, description="the same; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
+    )
+    axial_stiffness_n_per_m: Annotated[Number, Within(above=0), Usual(1e06, 2e09)] = Field(
+        default=1e8, description="along the shaft, where helical teeth push"
+    )
+    geometry: BallGeometry | None = Field(
+        default=None,
+        description="null: the stiffness above (damage is in one of the defaults); given: each of two such ball "
+        "bearings, whose stiffness follows load and clearance",
+    )
 
 
 class RotorSection(Section):
@@ -68,33 +85,12 @@ class RotorSection(Section):
     inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="about the shaft; null: of the same disc"
     )
-    bearing_stiffness_x_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=BEARINGS)
-    bearing_stiffness_y_n_per_m: Annotated[Number, Within(above=0)] = Field(default=2e8, description=BEARINGS)
-    bearing_damping_x_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=1000.0, description=DAMPED)
-    bearing_damping_y_n_s_per_m: Annotated[Number, Within(least=0)] = Field(default=1000.0, description=DAMPED)
     eccentricity_um: Annotated[Number, Within(least=0, most=200), Usual(0.5, 200)] = Field(
         default=0.0,
         description="of its gear's axis from its shaft's, at an angle of its own, beside what its accuracy class "
         "allows; needs manufacture",
     )
-    bearing_stiffness_z_n_per_m: Annotated[Number, Within(above=0), Usual(1e06, 2e09)] = Field(
-        default=1e8, description=BEARINGS
-    )
-    bearing: BallGeometry | None = Field(
-        default=None,
-        description=(
-            "null: the stiffnesses above (damage is in one of the defaults); given: each of two such ball bearings, "
-            "whose stiffness follows load and clearance"
-        ),
-    )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _alike(cls, value: Any) -> Any:
-        """Give y what x has where it has nothing of its own."""
-        if not isinstance(value, Mapping):
-            return value
-        return {**{key: value[other] for key, other in ALIKE.items() if other in value}, **value}
+    bearing: BearingSection = Field(default=BearingSection(), description="what its shaft turns in")
 
 
 class CouplingSection(Section):
@@ -137,7 +133,6 @@ class Dynamics(Section):
     gear: RotorSection = Field(default=RotorSection(), description="the gear and its shaft")
     input_coupling: CouplingSection = Field(default=CouplingSection(), description="between motor and the first gear")
     output_coupling: OutputCoupling = Field(default=OutputCoupling(), description="between the last gear and load")
-    # New numbers belong at the end: each takes one uniform in this order, and those above keep theirs.
     mesh: MeshSection = Field(default=MeshSection(), description="how the teeth push")
     friction: Friction = Field(default=Friction(), description="how the teeth rub")
     unbalance: UnbalanceSection = Field(default=UnbalanceSection(), description="forces of shafts out of balance")

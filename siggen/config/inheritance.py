@@ -6,25 +6,29 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from siggen.config.dynamics import ALIKE, RATED
+from siggen.config.dynamics import RATED
 from siggen.config.presets import config_file
 from siggen.errors import ConfigError, Problem, UsageError
 from siggen.keys.data_file import is_file
 from siggen.keys.merging import merged
 from siggen.keys.problems import received_text
 from siggen.keys.yaml_source import read_yaml
+from siggen.names import SHAFT_OF
 
 EXTENDS = "extends"
 REPLACED = ("gears", "planetary")
 """Sections that a machine takes the place of."""
 REPLACED_OF_DYNAMICS = ("pinion", "gear", "shafts")
 SIZED: Mapping[str, Any] = {
-    **dict.fromkeys(
-        ("pinion", "gear"),
-        dict.fromkeys(("mass_kg", "inertia_kg_m2", *(key for pair in ALIKE.items() for key in pair))),
-    ),
+    **{
+        gear: {
+            **dict.fromkeys(("mass_kg", "inertia_kg_m2")),
+            "bearing": dict.fromkeys(("stiffness_n_per_m", "damping_n_s_per_m")),
+        }
+        for gear in ("pinion", "gear")
+    },
     **dict.fromkeys(("motor_inertia_kg_m2", "load_inertia_kg_m2", "input_coupling", "output_coupling")),
-    "shafts": dict.fromkeys(("pinion", "gear"), dict.fromkeys(("bearing_span_mm", "diameter_mm"))),
+    "shafts": dict.fromkeys(SHAFT_OF.values(), dict.fromkeys(("bearing_span_mm", "diameter_mm"))),
 }
 """Keys of `dynamics` that a rated torque takes the place of; None: a key, else those of a section."""
 DEEPEST = 8

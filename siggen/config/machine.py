@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, ClassVar, Literal, TypeAlias
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from siggen.config.dynamics import RotorSection
 from siggen.config.gears import ToothForm, Wheel
+from siggen.keys.by_name import NamedParts, without_key_field
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Section
 from siggen.keys.user_name import PartName
@@ -20,13 +21,18 @@ Span: TypeAlias = Annotated[
 Direction: TypeAlias = Annotated[Number, Within(least=-180, most=180)]
 
 
-NAMED: Any = Field(description="its name: in places of sensors, damage, columns, messages and pages")
+class NamedPart(Section):
+    """What has a name, for places of sensors, damage, columns, messages and pages."""
+
+    key_field: ClassVar[str] = "name"
+    model_config = ConfigDict(json_schema_extra=lambda schema: without_key_field(schema, "name"))
+
+    name: PartName
 
 
-class MachineShaft(RotorSection):
+class MachineShaft(NamedPart, RotorSection):
     """A shaft on two bearings; masses are those of the gear that the shaft in front drives, of the first its own."""
 
-    name: PartName = NAMED
     span_mm: Span = Field(
         default=None,
         description="distance of the bearings of a shaft with two gears, which stand at its thirds; idler: one gear in "
@@ -34,17 +40,15 @@ class MachineShaft(RotorSection):
     )
 
 
-class MachineGear(Wheel):
+class MachineGear(NamedPart, Wheel):
     """A gear on a shaft."""
 
-    name: PartName = NAMED
     shaft: str = Field(description="name of the shaft that it stands on")
 
 
-class MachineMesh(ToothForm):
+class MachineMesh(NamedPart, ToothForm):
     """A gear that drives another one."""
 
-    name: PartName = NAMED
     driver: str = Field(description="name of the driving gear")
     driven: str = Field(description="name of the driven gear")
     direction_deg: Direction = Field(
@@ -60,6 +64,18 @@ class MachineSection(Section):
     The motor drives the shaft whose gear none drives, the load hangs on the shaft whose gear drives none.
     """
 
-    shafts: Annotated[tuple[MachineShaft, ...], Field(min_length=2, max_length=100)] = Field(description="its shafts")
-    gears: Annotated[tuple[MachineGear, ...], Field(min_length=2, max_length=200)] = Field(description="its gears")
-    meshes: Annotated[tuple[MachineMesh, ...], Field(min_length=1, max_length=100)] = Field(description="its meshes")
+    shafts: Annotated[
+        tuple[MachineShaft, ...],
+        Field(min_length=2, max_length=100),
+        NamedParts("{input: {}, output: {mass_kg: 6}}, 2 to 100"),
+    ] = Field(description="its shafts")
+    gears: Annotated[
+        tuple[MachineGear, ...],
+        Field(min_length=2, max_length=200),
+        NamedParts("{ida: {teeth: 18, bore_radius_mm: 12, shaft: input}, otto: {...}}, 2 to 200"),
+    ] = Field(description="its gears")
+    meshes: Annotated[
+        tuple[MachineMesh, ...],
+        Field(min_length=1, max_length=100),
+        NamedParts("{fast: {driver: ida, driven: otto, module_mm: 2, face_width_mm: 20}}, 1 to 100"),
+    ] = Field(description="its meshes")

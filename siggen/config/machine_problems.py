@@ -52,39 +52,38 @@ def idlers(machine: MachineSection) -> frozenset[str]:
 
 def _names(machine: MachineSection) -> Iterator[Problem]:
     for key in MachineSection.model_fields:
-        names = [one.name for one in getattr(machine, key)]
+        names = [part.name for part in getattr(machine, key)]
         for index, name in enumerate(names):
             alike = [other for other in names[:index] if other.lower() == name.lower()]
             if alike:
-                received = f"'{name}' a second time" if name in alike else f"'{name}' beside '{alike[0]}'"
                 allowed = "allowed: every name once, whatever its case: readers of columns may not tell"
-                yield Problem(f"machine.{key}.{index}.name", received, allowed)
+                yield Problem(f"machine.{key}.{name}", f"'{name}' beside '{alike[0]}'", allowed)
             if name.lower() in TAKEN:
                 allowed = f"allowed: another name than {', '.join(TAKEN)}"
-                yield Problem(f"machine.{key}.{index}.name", f"'{name}', which means something else", allowed)
+                yield Problem(f"machine.{key}.{name}", "a name that means something else", allowed)
     meshes = [one.name for one in machine.meshes]
-    for index, gear in enumerate(machine.gears):
+    for gear in machine.gears:
         if gear.name in meshes:
-            yield Problem(f"machine.gears.{index}.name", f"'{gear.name}', as a mesh is called", "allowed: another name")
+            yield Problem(f"machine.gears.{gear.name}", f"'{gear.name}', as a mesh is called", "allowed: another name")
     flanks = {f"{mesh.name}_{name}" for mesh in machine.meshes for name in idlers(machine)}
-    for index, gear in enumerate(machine.gears):
+    for gear in machine.gears:
         if gear.name in flanks:
             received = f"'{gear.name}', as columns name a flank of an idler by its mesh"
-            yield Problem(f"machine.gears.{index}.name", received, "allowed: a name whose columns are its own")
+            yield Problem(f"machine.gears.{gear.name}", received, "allowed: a name whose columns are its own")
     columns = {f"mesh_{one.name}_hz" for one in machine.meshes}
-    for index, shaft in enumerate(machine.shafts):
+    for shaft in machine.shafts:
         if f"{shaft.name}_shaft_hz" in columns:
             received = f"'{shaft.name}', whose column {shaft.name}_shaft_hz a mesh has too"
-            yield Problem(f"machine.shafts.{index}.name", received, "allowed: a name whose columns are its own")
+            yield Problem(f"machine.shafts.{shaft.name}", received, "allowed: a name whose columns are its own")
 
 
 def _references(machine: MachineSection) -> Iterator[Problem]:
     shafts, gears = [one.name for one in machine.shafts], [one.name for one in machine.gears]
-    for index, gear in enumerate(machine.gears):
-        yield from _unknown(f"machine.gears.{index}.shaft", gear.shaft, shafts)
-    for index, mesh in enumerate(machine.meshes):
-        yield from _unknown(f"machine.meshes.{index}.driver", mesh.driver, gears)
-        yield from _unknown(f"machine.meshes.{index}.driven", mesh.driven, gears)
+    for gear in machine.gears:
+        yield from _unknown(f"machine.gears.{gear.name}.shaft", gear.shaft, shafts)
+    for mesh in machine.meshes:
+        yield from _unknown(f"machine.meshes.{mesh.name}.driver", mesh.driver, gears)
+        yield from _unknown(f"machine.meshes.{mesh.name}.driven", mesh.driven, gears)
 
 
 def _unknown(path: str, name: str, known: Sequence[str]) -> Iterator[Problem]:
@@ -95,10 +94,10 @@ def _unknown(path: str, name: str, known: Sequence[str]) -> Iterator[Problem]:
 def _pairs(machine: MachineSection) -> Iterator[Problem]:
     """Yield meshes whose gears turn together."""
     names, shaft_of = [one.name for one in machine.shafts], _shaft_of(machine)
-    for index, mesh in enumerate(machine.meshes):
+    for mesh in machine.meshes:
         if (shaft := shaft_of[mesh.driver]) == shaft_of[mesh.driven]:
             received = f"'{mesh.driven}', which stands on the shaft {names[shaft]} as {mesh.driver} does"
-            yield Problem(f"machine.meshes.{index}.driven", received, "allowed: a gear on another shaft")
+            yield Problem(f"machine.meshes.{mesh.name}.driven", received, "allowed: a gear on another shaft")
 
 
 def _gears(machine: MachineSection) -> Iterator[Problem]:
@@ -107,13 +106,14 @@ def _gears(machine: MachineSection) -> Iterator[Problem]:
     for mesh in machine.meshes:
         for name in (mesh.driver, mesh.driven):
             meshes.setdefault(name, []).append(mesh.name)
-    for index, gear in enumerate(machine.gears):
+    for gear in machine.gears:
         own = meshes.get(gear.name, [])
         received = f"'{gear.name}', in {len(own)} meshes{': ' if own else ''}{', '.join(own)}"
         if len(own) not in {1, 2}:
-            more = "give each mesh a gear of its own on the shaft" if own else "leave the gear out, or let it mesh"
+            out = f"leave the gear out ({gear.name}: null), or let it mesh"
+            more = "give each mesh a gear of its own on the shaft" if own else out
             allowed = f"allowed: one mesh, or two of an idler, which is driven in one and drives in the other; {more}"
-            yield Problem(f"machine.gears.{index}.name", received, allowed)
+            yield Problem(f"machine.gears.{gear.name}", received, allowed)
 
 
 def _connected(machine: MachineSection) -> Iterator[Problem]:
@@ -122,7 +122,7 @@ def _connected(machine: MachineSection) -> Iterator[Problem]:
     for index, shaft in enumerate(machine.shafts):
         if index not in reached:
             received = f"'{shaft.name}', which no mesh joins with the shaft {first}"
-            yield Problem(f"machine.shafts.{index}.name", received, "allowed: shafts joined by meshes of their gears")
+            yield Problem(f"machine.shafts.{shaft.name}", received, "allowed: shafts joined by meshes of their gears")
 
 
 def _loops(machine: MachineSection) -> Iterator[Problem]:
@@ -141,7 +141,7 @@ def _loops(machine: MachineSection) -> Iterator[Problem]:
                     f"{names[1]}, by theirs {float(turns):.4g}"
                 )
             allowed = "allowed: one way from the motor to the load; leave one mesh of the loop out, with its gears"
-            yield Problem(f"machine.meshes.{index}.name", received, allowed)
+            yield Problem(f"machine.meshes.{mesh.name}", received, allowed)
 
 
 def _branches(machine: MachineSection) -> Iterator[Problem]:
@@ -151,14 +151,15 @@ def _branches(machine: MachineSection) -> Iterator[Problem]:
         counts = Counter(shaft_of[getattr(mesh, key)] for mesh in machine.meshes)
         for shaft, count in counts.items():
             if count > 1:
-                received = f"'{machine.shafts[shaft].name}', which {does} {count} meshes"
-                yield Problem(f"machine.shafts.{shaft}.name", received, "allowed: one way from the motor to the load")
+                name = machine.shafts[shaft].name
+                received = f"'{name}', which {does} {count} meshes"
+                yield Problem(f"machine.shafts.{name}", received, "allowed: one way from the motor to the load")
 
 
 def _spans(machine: MachineSection) -> Iterator[Problem]:
     inner, of_idlers = train(machine).shafts[1:-1], {_shaft_of(machine)[name] for name in idlers(machine)}
     for index, shaft in enumerate(machine.shafts):
-        path, received = f"machine.shafts.{index}.span_mm", str(shaft.span_mm)
+        path, received = f"machine.shafts.{shaft.name}.span_mm", str(shaft.span_mm)
         if index in of_idlers and shaft.span_mm not in (None, IDLER):
             yield Problem(path, received, "allowed: idler or null of a shaft with one gear in two meshes")
         elif index not in inner and shaft.span_mm is not None:

@@ -12,11 +12,12 @@ from pydantic import TypeAdapter, ValidationError
 
 from siggen.config.config import Config
 from siggen.config.consistency import consistency_problems
+from siggen.config.inheritance import REPLACED
 from siggen.config.machine_problems import machine_problems
-from siggen.config.short_form import drivetrain, names_of, short_form
+from siggen.config.short_form import drivetrain, names_of, problems_beside
 from siggen.config.state_keys import complete_states, source_of
 from siggen.errors import Problem
-from siggen.keys.by_name import BY_NAME, named_entries, refused_list
+from siggen.keys.by_name import BY_NAME, NO_NAME, named_entries, refused_list
 from siggen.keys.problems import (
     MISSING,
     MOST_PROBLEMS,
@@ -62,15 +63,13 @@ def parse(raw: Mapping[str, object]) -> ParsedConfig:
     if raw.get("machine") is None:
         return _parsed(raw, {"machine": None, "stages": ()})
     machine, wrong = _validated(_adapter("machine"), raw["machine"], ("machine",))
-    if wrong := wrong or machine_problems(machine):
+    if wrong := [_at_part(one, raw["machine"]) for one in wrong] or machine_problems(machine):
         return ParsedConfig(None, MappingProxyType({}), tuple(wrong))  # words of all else are those of its names
     names = names_of(machine)
     gears, stages, rotors = drivetrain(machine)
-    short, wrong = short_form(raw, names)
-    parsed, told = (
-        _parsed(short, {"machine": machine, "gears": gears, "stages": stages}, rotors),
-        {problem.path for problem in wrong},
-    )
+    short = {key: value for key, value in raw.items() if key not in (*REPLACED, "machine")}
+    parsed = _parsed(short, {"machine": machine, "gears": gears, "stages": stages}, rotors)
+    wrong, told = [*problems_beside(raw)], {problem.path for problem in problems_beside(raw)}
     problems = [*wrong, *(one for one in map(names.problem, parsed.problems) if one.path not in told)]
     return ParsedConfig(None if wrong else parsed.config, parsed.sections, tuple(problems), names)
 
@@ -89,6 +88,8 @@ def _parsed(raw: Mapping[str, object], of_machine: Mapping[str, Any], rotors: Ma
             sections[name] = {} if value == () and name in BY_NAME else value
     if rotors and "dynamics" in sections:
         sections["dynamics"] = sections["dynamics"].model_copy(update=rotors)
+    if raw.get("planetary") is not None and "planetary" not in sections:  # words of all else are those of its gears
+        return ParsedConfig(None, MappingProxyType({}), tuple(problems))
     problems += consistency_problems(sections, raw)
     if isinstance(states := raw.get("states"), Mapping):
         problems = [one for one in problems if not _taken_over(one, problems, states)]
@@ -136,8 +137,7 @@ def _entries(name: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any] | None, 
         if len(problems) >= MOST_PROBLEMS:
             break
         if isinstance(item, Mapping) and "name" in item:
-            allowed = "allowed: no key name here, since the name stands before the entry"
-            problems.append(Problem(_below(name, key, "name"), received_text(item["name"]), allowed))
+            problems.append(Problem(_below(name, key, "name"), received_text(item["name"]), NO_NAME))
             continue
         named = {"name": key, **item} if isinstance(item, Mapping) else item
         entry, found = _validated(_entry_adapter(name), named, (name, 0))
@@ -147,12 +147,20 @@ def _entries(name: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any] | None, 
     return entries, problems
 
 
-def _of_entry(problem: Problem, name: str, key: str) -> Problem:
-    """Return the problem of an entry under its name; that of the name itself stands at the entry."""
-    below = problem.path.removeprefix(f"{name}.0").removeprefix(".")
+def _of_entry(problem: Problem, name: str, key: str, place: int = 0) -> Problem:
+    """Return the problem of an entry in a place under its name; that of the name itself stands at the entry."""
+    below = problem.path.removeprefix(f"{name}.{place}").removeprefix(".")
     if below != "name":
         return replace(problem, path=_below(name, key, below))
     return replace(problem, path=_below(name, key), received=f"the name {key[:60]!r}")
+
+
+def _at_part(problem: Problem, machine: Any) -> Problem:
+    """Return a problem of a shaft, gear or mesh under its name."""
+    _, kind, place, *_ = *problem.path.split("."), "", ""
+    if not place.isdecimal():
+        return problem
+    return _of_entry(problem, f"machine.{kind}", [*named_entries(kind, machine)][int(place)], int(place))
 
 
 def _taken_over(problem: Problem, problems: Sequence[Problem], states: Mapping[str, object]) -> bool:

@@ -17,7 +17,7 @@ from siggen.config.machine import MachineMesh, MachineSection
 from siggen.config.machine_problems import idlers, train
 from siggen.config.stages import Stage
 from siggen.errors import Problem
-from siggen.keys.problems import received_text
+from siggen.keys.problems import joined, received_text
 from siggen.keys.section import Section
 from siggen.names import (
     GEAR,
@@ -30,9 +30,6 @@ from siggen.names import (
     Names,
     ShaftName,
 )
-
-OF_SHAFTS = ("driver", "driven")
-"""Keys of `dynamics.shafts` beside a machine."""
 
 
 @cache
@@ -66,65 +63,35 @@ def _mesh_name(inner: str, mesh: MachineMesh, shared: Collection[str]) -> MeshNa
 
 def _paths(machine: MachineSection) -> Iterator[tuple[str, str]]:
     """Yield keys of sections and where the machine has them."""
-    found, gears = train(machine), {gear.name: index for index, gear in enumerate(machine.gears)}
-    for number, place in enumerate(found.meshes):
-        mesh, path = machine.meshes[place], f"stages.{number - 1}." if number else ""
+    order = train(machine)
+    shafts = [f"machine.shafts.{machine.shafts[place].name}" for place in order.shafts]
+    for number, mesh in enumerate(machine.meshes[place] for place in order.meshes):
+        stage, at = f"stages.{number - 1}" if number else "", f"machine.meshes.{mesh.name}"
         for role, gear in zip(SECTIONS, (mesh.driver, mesh.driven), strict=True):
-            yield f"{path}gears.{role}", f"machine.gears.{gears[gear]}"
-        yield f"{path}gears", f"machine.meshes.{place}"
-        if number:
-            here = f"stages.{number - 1}"
-            yield from ((f"{here}.{key}", f"machine.meshes.{place}.{key}") for key in ("name", "direction_deg"))
-            yield f"{here}.span_mm", f"machine.shafts.{found.shafts[number]}.span_mm"
-            yield f"{here}.gear", f"machine.shafts.{found.shafts[number + 1]}"
-            yield here, f"machine.meshes.{place}"
-    for role, key, place in zip(SECTIONS, OF_SHAFTS, found.shafts, strict=False):
-        yield f"dynamics.{role}", f"machine.shafts.{place}"
-        yield f"dynamics.shafts.{role}", f"dynamics.shafts.{key}"
+            yield joined(stage, "gears", role), f"machine.gears.{gear}"
+        yield joined(stage, "gears"), at
+        if stage:
+            yield f"{stage}.span_mm", f"{shafts[number]}.span_mm"
+            yield f"{stage}.gear", shafts[number + 1]
+            yield stage, at
+    yield from ((f"dynamics.{role}", shaft) for role, shaft in zip(SECTIONS, shafts, strict=False))
 
 
-def short_form(raw: Mapping[str, Any], names: Names) -> tuple[dict[str, Any], list[Problem]]:
-    """Return what a file says beside its machine in words of pairs, and words of the file that are none of its own."""
-    short = {key: value for key, value in raw.items() if key not in (*REPLACED, "machine")}
-    short |= {"dynamics": _with_shafts(raw["dynamics"], OF_SHAFTS, SECTIONS)} if "dynamics" in raw else {}
-    return _with_changes(short, names), [*_beside(raw), *_keys(raw)]
-
-
-def own_form(plain: Mapping[str, Any], names: Names) -> dict[str, Any]:
-    """Return a configuration as plain mappings and lists as the user writes it; `short_form` of it is the same."""
-    own = {key: value for key, value in plain.items() if key not in REPLACED}
-    dynamics = {key: value for key, value in own["dynamics"].items() if key not in SECTIONS}
-    own = {**own, "dynamics": _with_shafts(dynamics, SECTIONS, OF_SHAFTS)}
-    states = {
-        name: {**one, "changes": {names.own_path(path): to for path, to in one["changes"].items()}}
-        for name, one in own["states"].items()
-    }
-    return {**own, "states": states}
-
-
-def _beside(raw: Mapping[str, Any]) -> Iterator[Problem]:
+def problems_beside(raw: Mapping[str, Any]) -> Iterator[Problem]:
+    """Yield what a file says beside its machine that is said by that."""
     for key in REPLACED:
         if raw.get(key):
             yield Problem(key, "a section beside machine", "allowed: either this section or machine")
+    given = raw.get("dynamics")
+    dynamics: Mapping[str, Any] = given if isinstance(given, Mapping) else {}
+    for key in {*SECTIONS} & dynamics.keys():
+        yield Problem(f"dynamics.{key}", received_text(dynamics[key]), "allowed with a machine: machine.shafts")
 
 
-def _keys(raw: Mapping[str, Any]) -> Iterator[Problem]:
-    """Yield keys of a pair alone."""
-    if isinstance(dynamics := raw.get("dynamics"), Mapping):
-        for key in {*SECTIONS, *OF_SHAFTS} & dynamics.keys():
-            yield Problem(f"dynamics.{key}", received_text(dynamics[key]), "allowed with a machine: machine.shafts")
-        shafts = dynamics.get("shafts")
-        for key, now in zip(SECTIONS, OF_SHAFTS, strict=True):
-            if isinstance(shafts, Mapping) and key in shafts:
-                yield Problem(f"dynamics.shafts.{key}", received_text(shafts[key]), f"allowed with a machine: {now}")
-
-
-def _with_shafts(dynamics: Any, keys: tuple[str, str], to: tuple[str, str]) -> Any:
-    """Return the section with the keys of its shafts replaced."""
-    shafts = dynamics.get("shafts") if isinstance(dynamics, Mapping) else None
-    table = dict(zip(keys, to, strict=True))
-    own = {table.get(key, key): one for key, one in shafts.items()} if isinstance(shafts, Mapping) else shafts
-    return dynamics if own is None else {**dynamics, "shafts": own}
+def without_inner(plain: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a configuration with a machine as plain mappings and lists, without what the machine says."""
+    dynamics = {key: value for key, value in plain["dynamics"].items() if key not in SECTIONS}
+    return {**{key: value for key, value in plain.items() if key not in REPLACED}, "dynamics": dynamics}
 
 
 def drivetrain(machine: MachineSection) -> tuple[GearsSection, tuple[Stage, ...], dict[str, RotorSection]]:
@@ -154,18 +121,3 @@ def drivetrain(machine: MachineSection) -> tuple[GearsSection, tuple[Stage, ...]
 def _values(section: Section, model: type[Section]) -> dict[str, Any]:
     """Return what a section has of a model's keys."""
     return {key: getattr(section, key) for key in model.model_fields}
-
-
-def _with_changes(short: dict[str, Any], names: Names) -> dict[str, Any]:
-    """Return a raw configuration whose states change keys of the short form."""
-    states = short.get("states")
-    if not isinstance(states, Mapping):
-        return short
-    return {**short, "states": {name: _with_short_paths(state, names) for name, state in states.items()}}
-
-
-def _with_short_paths(state: Any, names: Names) -> Any:
-    changes = state.get("changes") if isinstance(state, Mapping) else None
-    if not isinstance(changes, Mapping):
-        return state
-    return {**state, "changes": {names.inner_path(str(path)): to for path, to in changes.items()}}

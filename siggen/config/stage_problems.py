@@ -11,17 +11,16 @@ from siggen.config.short_form import names_in
 from siggen.config.stages import OF_BOTH_MESHES, Stage, turned_teeth
 from siggen.errors import Problem
 from siggen.keys.number import bounds
-from siggen.keys.problems import joined, nearest, received_text
+from siggen.keys.problems import joined, nearest
 from siggen.names import EITHER, Names
 
 
-def stage_problems(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Iterator[Problem]:
+def stage_problems(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
     """Yield what is wrong about further meshes between the valid sections of a configuration."""
     yield from _beside(sections)
-    if raw.get("planetary") is None or sections.get("planetary"):  # not one that is wrong itself
-        names = names_in(sections["machine"], planetary=sections.get("planetary") is not None)
-        yield from _idlers(sections, names)
-        yield from _named(sections, names)
+    names = names_in(sections["machine"], planetary=sections.get("planetary") is not None)
+    yield from _idlers(sections, names)
+    yield from _named(sections, names)
 
 
 def most_teeth_per_turn(sections: Mapping[str, Any]) -> float:
@@ -46,10 +45,11 @@ def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
     if "dynamics" in sections:
         yield from _of_dynamics(sections["dynamics"], sections.get("housing"))
     for index, stage in enumerate(sections["stages"]):
-        for key in ("bearing", "eccentricity_um"):
-            if (value := getattr(stage.gear, key)) != RotorSection.model_fields[key].default:
-                received = received_text(value) if isinstance(value, float) else "a section"
-                yield Problem(f"stages.{index}.gear.{key}", received, "allowed: none on a shaft behind the second")
+        at, allowed = f"stages.{index}.gear", "allowed: none on a shaft behind the second"
+        if (value := stage.gear.eccentricity_um) != RotorSection.model_fields["eccentricity_um"].default:
+            yield Problem(f"{at}.eccentricity_um", str(value), allowed)
+        if stage.gear.bearing.geometry is not None:
+            yield Problem(f"{at}.bearing.geometry", "a section", allowed)
     if "gears" in sections:
         yield from _of_gears(sections["gears"], sections["stages"])
     background = sections.get("background")
@@ -69,8 +69,8 @@ def _of_dynamics(dynamics: Dynamics, housing: object) -> Iterator[Problem]:
     if dynamics.mesh.law != "pairs":
         yield Problem("dynamics.mesh.law", f"'{dynamics.mesh.law}'", f"allowed: pairs {BESIDE}")
     for which in ("pinion", "gear"):
-        if getattr(dynamics, which).bearing is not None:
-            yield Problem(f"dynamics.{which}.bearing", "a section", f"allowed: null {BESIDE}")
+        if getattr(dynamics, which).bearing.geometry is not None:
+            yield Problem(f"dynamics.{which}.bearing.geometry", "a section", f"allowed: null {BESIDE}")
 
 
 def _of_gears(gears: GearsSection, stages: tuple[Stage, ...]) -> Iterator[Problem]:

@@ -36,7 +36,7 @@ LOADED_DEG = 0.0
 
 
 class BearingSpalls(Fault):
-    """A spall in one of the two bearings of a shaft: `dynamics.<shaft>.bearing`; where that is null, its defaults."""
+    """A spall in one of both bearings of a shaft: `dynamics.<shaft>.bearing.geometry`, of its defaults where null."""
 
     words: ClassVar[tuple[str, ...]] = ("bearing",)
     acts: ClassVar[str] = (

@@ -147,17 +147,22 @@ def drawn_background(config: Config, specimen_id: int) -> DrawnBackground | None
     bursts = levels(BurstLevels, BurstNumbers, None if rubbing is None else rubbing.bursts, "rubbing.bursts")
     bands = {} if bearings is None else dict.fromkeys(BANDS, bearings.velocity_um_s)
     meshes = {"second_stage": section.second_stage, "auxiliary_drive": section.auxiliary_drive}
+    both = {role: shaft.word for role, shaft in zip(Side, config.names.shafts, strict=False)}
     turned = {"auxiliary_drive": "auxiliary_drive", **{name: f"machines.{name}" for name in MACHINES}}
     return DrawnBackground(
         base=None if section.base is None else _base(drawn(BaseNumbers, section.base, "base")),
         rubbing=levels(RubbingLevels, RubbingNumbers, rubbing, "rubbing", bursts=bursts),
         bearings={
-            role: BearingLevels(**in_si(drawn(BearingNumbers, bearings, f"bearings.{role}", **bands)))
-            for role in Side
+            role: BearingLevels(**in_si(drawn(BearingNumbers, bearings, f"bearings.{shaft}", **bands)))
+            for role, shaft in both.items()
             if bearings is not None
         },
         machines=levels(MachineLevels, MachineNumbers, section.machines, "machines"),
-        shafts={r: _shaft(drawn(ShaftNumbers, shafts, f"shafts.{r}")) for r in Side if shafts is not None},
+        shafts={
+            role: _shaft(drawn(ShaftNumbers, shafts, f"shafts.{shaft}"))
+            for role, shaft in both.items()
+            if shafts is not None
+        },
         foreign={
             name: ForeignLevels(**in_si(drawn(ForeignNumbers, mesh, name)))
             for name, mesh in meshes.items()

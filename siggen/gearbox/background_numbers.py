@@ -62,8 +62,8 @@ class BearingNumbers(Section):
     """Of both bearings of a shaft: rms velocities of the bands, and how the shaft modulates the noise (assumed).
 
     Balls that pass the outer ring `ball_pass_order` times a turn (derived) move the shaft by `compliance_um` (assumed);
-    bearings of `dynamics.<shaft>.bearing` have their own. The cage lags by a share that a record draws (assumed: 0.5 to
-    2 %). The level is as of the rubbing, one course per shaft (measured).
+    bearings with a `geometry` have their own. The cage lags by a share that a record draws (assumed: 0.5 to 2 %).
+    The level is as of the rubbing, one course per shaft (measured).
     """
 
     low_um_s: Drawn

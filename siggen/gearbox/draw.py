@@ -10,12 +10,13 @@ from siggen.config import Config, Dynamics, GearsSection, Planetary, RotorSectio
 from siggen.config.config import rated_nm
 from siggen.config.planetary import RING
 from siggen.config.planetary_problems import set_of
-from siggen.config.stages import Stage, turned, with_idlers
+from siggen.config.stages import Stage, turned
 from siggen.dynamics.time.sampling import Sampling
 from siggen.gearbox.background import drawn_background
 from siggen.gearbox.channels import drawn_channels
 from siggen.gearbox.configured import gearbox_config, gearbox_life, state_config
 from siggen.gearbox.drive import drawn_unbalance, drawn_variation
+from siggen.gearbox.drivetrain import drawn_dynamics, drawn_gears
 from siggen.gearbox.housing import drawn_housing
 from siggen.gearbox.labels import gearbox_labels, state_labels
 from siggen.gearbox.pair import gear_pair, stiffness_options
@@ -53,14 +54,13 @@ def _drawn(config: Config, own: Config, specimen_id: int) -> Specimen:
     """Return a specimen of a set by its own configuration."""
     gears = named_uniforms(config.seed, Stream.GEARS, specimen_id)
     supports = named_uniforms(config.seed, Stream.SUPPORTS, specimen_id)
-    first, stiffness = draw(own.gears, gears, "gears"), draw(own.stiffness, gears, "stiffness")
-    dynamics = draw(own.dynamics, supports, "dynamics")
-    stages = tuple(with_idlers(first, (draw(one, supports, f"stages.{one.name}") for one in own.stages)))
+    first, stages, of_machine = drawn_gears(own, specimen_id)
+    stiffness, dynamics = draw(own.stiffness, gears, "stiffness"), drawn_dynamics(own, specimen_id, of_machine)
     section = None if own.planetary is None else draw(own.planetary, supports, "planetary")
-    drawing, rotors = partial(draw_teeth, own, specimen_id, stiffness_options(stiffness)), _rotors(own.dynamics)
+    drawing, rotors = partial(draw_teeth, own, specimen_id, stiffness_options(stiffness)), _rotors(dynamics)
     planets = None
     if section is None:
-        meshes = tuple(_meshes(first, rotors, stages, own.seed, drawing))
+        meshes = tuple(_meshes(first, rotors, stages, own, drawing))
     else:
         planets = _planets(own, section, first, dynamics, specimen_id, drawing)
         meshes = ToothMesh("", planets.meshes[0]), ToothMesh(RING, planets.meshes[len(planets.pin_errors_m)])
@@ -103,15 +103,16 @@ def _rotors(dynamics: Dynamics) -> tuple[RotorSection, RotorSection]:
 
 
 def _meshes(
-    gears: GearsSection, rotors: Sequence[RotorSection], stages: tuple[Stage, ...], seed: int, drawing: Drawing
+    gears: GearsSection, rotors: Sequence[RotorSection], stages: tuple[Stage, ...], own: Config, drawing: Drawing
 ) -> Iterator[ToothMesh]:
     """Yield the meshes of a train; the axis of an idler is that which it has in the mesh in front."""
-    front = drawing(gear_pair(gears), rotors, seed, "", 1.0)
+    first = own.names.first.word
+    front = drawing(gear_pair(gears), rotors, mesh_seed(own.seed, first) if first else own.seed, "", 1.0)
     yield ToothMesh("", front)
     for stage, turning in zip(stages, turned(gears, stages), strict=False):
-        pair, of_stage = gear_pair(stage.gears), mesh_seed(seed, stage.name)
-        own = drawing(pair, (RotorSection(), RotorSection()), of_stage, stage.name, float(turning))
-        front = on_one_body(own, front, idler_later_rad(front.pair, pair)) if stage.idler else own
+        pair, of_stage = gear_pair(stage.gears), mesh_seed(own.seed, stage.name)
+        teeth = drawing(pair, (RotorSection(), RotorSection()), of_stage, stage.name, float(turning))
+        front = on_one_body(teeth, front, idler_later_rad(front.pair, pair)) if stage.idler else teeth
         yield ToothMesh(stage.name, front, stage.idler, radians(constant(stage.direction_deg)))
 
 
@@ -130,7 +131,7 @@ def _planets(
     rng = named_generator(config.seed, Stream.GEARS, specimen_id, name="planetary.pin_error_um")
     errors = 1e-6 * constant(section.pin_error_um) * rng.standard_normal(len(section.positions_deg))
     stage = planetary_stage(section, dynamics, pair, ring, teeth)
-    meshes = planetary_teeth(drawing, _rotors(config.dynamics), config.seed, teeth, pair, ring)
+    meshes = planetary_teeth(drawing, _rotors(dynamics), config.seed, teeth, pair, ring)
     return PlanetaryGears(teeth, pair, ring, stage, tuple(errors.tolist()), meshes)
 
 

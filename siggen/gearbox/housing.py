@@ -118,9 +118,7 @@ def drawn_housing(
         highest_hz=0.5 * config.fs_hz,
         foot_damping_ratio=constant(numbers.feet.damping_ratio),
         loose_share=constant(numbers.loose_foot_share),
-        front_share={
-            role: 0.5 if shafts is None else 1.0 - constant(getattr(shafts, role).gear_position) for role in Side
-        },
+        front_share={role: 0.5 if shafts is None else 1.0 - constant(shafts.of(role).gear_position) for role in Side},
         drive_share=(_of_wall(path("housing.auxiliary_drive.0")), _of_wall(path("housing.auxiliary_drive.1"))),
         mounts={sensor.name: _mount(sensor, sensor.plate, path) for sensor in sensors if sensor.plate is not None},
         plate_damping=partial(_plate_damping, rng, section.damping_ratio),

@@ -43,7 +43,7 @@ def housing_contents(numbers: PlateNumbers, shafts: Shafts | None, pair: GearPai
     centre = pair.working_centre_distance_m
     diameters = [SHAFT_SHARE * centre] * 2
     if shafts is not None:
-        diameters = [1e-3 * constant(shaft.diameter_mm) for shaft in (shafts.gear, shafts.pinion)]
+        diameters = [1e-3 * constant(shaft.diameter_mm) for shaft in (shafts.driven, shafts.driver)]
     outer = [constant(numbers.bearing) * diameter for diameter in diameters]
     room = min(1.0, 2.0 * ROOM_BETWEEN_BEARINGS * centre / sum(outer))
     return Contents(
@@ -62,7 +62,7 @@ def _proportions(numbers: PlateNumbers, shafts: Shafts | None, contents: Content
     above = _height_m(constant(n.above) * centre, contents, wall, constant(n.lid))
     sump = _height_m(constant(n.sump) * centre, contents, wall, constant(n.floor))
     if shafts is not None:
-        spans = [1e-3 * constant(shaft.bearing_span_mm) for shaft in (shafts.gear, shafts.pinion)]
+        spans = [1e-3 * constant(shaft.bearing_span_mm) for shaft in (shafts.driven, shafts.driver)]
         side = max(0.5 * (sum(spans) / 2.0 - wall - contents.face_width_m) - overhang, CLEARANCE_M)
     if n.length_mm is not None:
         end = 0.5 * (1e-3 * constant(n.length_mm) - centre - sum(contents.tip_radius_m))

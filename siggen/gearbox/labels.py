@@ -51,7 +51,7 @@ def state_labels(config: Config, state_id: int) -> Labels:
     if any(one.sham for one in states):
         labels[SHAM] = state.sham
     if any(one.changes for one in states):
-        labels[CHANGED] = [config.names.own_path(one.path) for _, one in config.changes_of(state_id)]
+        labels[CHANGED] = [change.path for _, change in config.changes_of(state_id)]
     words = {word for number in range(len(states)) for word in _words(config, number)}
     if words and any(len(one.damages) > 1 for one in states):
         labels[PRIMARY], shown = state.primary_fault, set(_words(config, state_id))

@@ -12,6 +12,7 @@ from typing import Literal
 from siggen.config import Config, GearsSection, StateSection
 from siggen.config.life import FUNCTIONAL_SHARE, JITTER, Life
 from siggen.faults.registry import HEALTHY
+from siggen.gearbox.drivetrain import drawn_gears
 from siggen.gearbox.pair import gear_pair
 from siggen.keys.drawing import draw
 from siggen.keys.number import at
@@ -93,7 +94,7 @@ def lived(config: Config, nominal: GearsSection, specimen_id: int) -> Lived:
     life = config.life
     assert life is not None
     uniform = named_uniforms(config.seed, Stream.LIFE, specimen_id)
-    drawn: GearsSection = draw(config.gears, named_uniforms(config.seed, Stream.GEARS, specimen_id), "gears")
+    drawn, *_ = drawn_gears(config, specimen_id)
     middle: GearsSection = draw(nominal, lambda _: 0.5, "gears")
     wearing = Wearing(
         flanks(gear_pair(drawn)),

@@ -30,7 +30,7 @@ from siggen.gears.stiffness.stiffness_notes import stiffness_notes
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.keys.drawing import Uniforms, corners, draw
 from siggen.keys.number import HIGH, MIDDLE, at, bounds
-from siggen.names import MeshName, Side
+from siggen.names import SHAFT_OF, MeshName, Side
 
 HARMLESS = {"operating_points": (), "sensors": (), "duration_s": 86_400.0}
 """In place of sections that are refused for themselves, where their defaults would not do."""
@@ -106,7 +106,7 @@ class PossibleGearbox:
 
     def changed(self, state: int) -> PossibleGearbox:
         """Return those that a state has changed."""
-        sections = {name: getattr(self.config, name) for name in SECTIONS}
+        sections = {name: getattr(self.config, name) for name in ("machine", *SECTIONS)}
         changes = changed_sections(sections, [change for _, change in self.config.changes_of(state)])
         return PossibleGearbox(self.config.model_copy(update=changes), self.refused)
 
@@ -177,8 +177,8 @@ class PossibleGearbox:
 
     def ball(self, side: Side, uniform: Uniforms) -> BallBearing | None:
         """Return each bearing of a shaft whose stiffness follows the load; None where it does not."""
-        section: BallGeometry | None = getattr(self.config.dynamics, side).bearing
-        return None if section is None else draw(section, uniform, f"dynamics.{side}.bearing").bearing()
+        section: BallGeometry | None = getattr(self.config.dynamics, side).bearing.geometry
+        return None if section is None else draw(section, uniform, f"dynamics.{side}.bearing.geometry").bearing()
 
     def rotor(self, side: Side, pair: GearPair, uniform: Uniforms) -> Rotor:
         """Return a gear of the first mesh on its bearings."""
@@ -187,8 +187,10 @@ class PossibleGearbox:
 
     def shaft(self, side: Side, pair: GearPair) -> Callable[[Uniforms], Shaft]:
         """Return what draws a shaft that bends, with a typical gear."""
-        rotor, section = self.rotor(side, pair, lambda _: MIDDLE), getattr(self.config.dynamics.shafts, side)
-        return lambda uniform: shaft_numbers(draw(section, uniform, f"dynamics.shafts.{side}"), rotor, pair)
+        rotor, shafts = self.rotor(side, pair, lambda _: MIDDLE), self.config.dynamics.shafts
+        assert shafts is not None
+        section, at = shafts.of(side), f"dynamics.shafts.{SHAFT_OF[side]}"
+        return lambda uniform: shaft_numbers(draw(section, uniform, at), rotor, pair)
 
     def plates(self, uniform: Uniforms) -> PlateNumbers | None:
         """Return the numbers of a box of plates; None where something else carries the bearings."""

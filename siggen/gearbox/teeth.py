@@ -17,7 +17,7 @@ from siggen.gears.contact.table_options import reference_force_n
 from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.keys.number import bounds
+from siggen.keys.number import bounds, constant
 from siggen.names import Side
 
 Made = TypeVar("Made", SpecimenErrors, SpecimenWaves)
@@ -76,19 +76,19 @@ def draw_teeth(
     specimen_id : int
     bending : how teeth of the gearbox bend
     pair : its gears
-    rotors : (2,) of pinion and gear, whose seats lie off their bearings
+    rotors : (2,) drawn, of pinion and gear, whose seats lie off their bearings
     seed : int, of its draws
     mesh : what the damage of states calls it
     turning : turns of its pinion per turn of the first one
     """
     section = config.manufacture
-    eccentricities_um, made = [one.eccentricity_um for one in rotors], None
+    seats_m, made = [1e-6 * constant(rotor.eccentricity_um) for rotor in rotors], None
     if section is not None:
         made = MadeWith(section.has_crowning, section.has_helix, section.flank_waves == "on")
 
     def errors(state: int) -> SpecimenErrors | None:
         owner = specimen_id, state
-        return None if section is None else drawn_errors(section, eccentricities_um, seed, owner, pair)
+        return None if section is None else drawn_errors(section, seats_m, seed, owner, pair)
 
     def waves(state: int) -> SpecimenWaves | None:
         return None if made is None or not made.waves else drawn_waves(seed, (specimen_id, state), pair)
@@ -107,7 +107,7 @@ def draw_teeth(
 
 def mesh_seed(seed: int, name: str) -> int:
     """Return the seed of the draws of a further mesh, by its name."""
-    return int.from_bytes(hashlib.sha256(f"{seed} stages.{name}".encode()).digest()[:8]) >> 1
+    return int.from_bytes(hashlib.sha256(f"{seed} machine.meshes.{name}".encode()).digest()[:8]) >> 1
 
 
 def sharing(own: Teeth, other: Teeth, side: Side) -> Teeth:

@@ -19,9 +19,9 @@ from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.missing_material import MissingMaterial
 from siggen.keys.distributions import Uniform
-from siggen.keys.number import Number, at
+from siggen.keys.number import at
 from siggen.names import Side
-from siggen.seeding import Stream, named_generator, named_uniforms
+from siggen.seeding import Stream, named_generator
 
 RUNOUT_SHARE = Uniform(low=0.3, high=0.8)
 """Runout over what class and tolerance share allow; the first harmonic of the pitch deviations (assumed)."""
@@ -89,7 +89,7 @@ class SpecimenErrors:
 
 
 def drawn_errors(
-    section: Manufacture, eccentricities_um: Sequence[Number], seed: int, owner: tuple[int, int], pair: GearPair
+    section: Manufacture, seats_m: Sequence[float], seed: int, owner: tuple[int, int], pair: GearPair
 ) -> SpecimenErrors:
     """Return the errors of pinion and gear of a mesh whose draws have this seed and owner, gearbox and state.
 
@@ -98,7 +98,7 @@ def drawn_errors(
     Parameters
     ----------
     section : Manufacture
-    eccentricities_um : (2,) how far the seats of pinion and gear lie off their bearings
+    seats_m : (2,) how far the seats of pinion and gear lie off their bearings [m]
     seed : int
     owner : gearbox, and the state for which the errors are drawn
     pair : GearPair
@@ -112,12 +112,7 @@ def drawn_errors(
     def draws(name: str) -> np.random.Generator:
         return named_generator(seed, Stream.MANUFACTURE, *owner, name=f"manufacture.{name}")
 
-    supports = named_uniforms(seed, Stream.SUPPORTS, owner[0])
-    seats = [
-        1e-6 * at(number, supports(f"dynamics.{side}.eccentricity_um"))
-        for side, number in zip(Side, eccentricities_um, strict=True)
-    ]
-    pinion, gear = (_made(section, pair, side, seat, draws) for side, seat in zip(Side, seats, strict=True))
+    pinion, gear = (_made(section, pair, side, seat, draws) for side, seat in zip(Side, seats_m, strict=True))
     shafts_m = _shafts_m(section, (pinion, gear), draws)
     return SpecimenErrors(pinion, gear, shafts_m)
 

@@ -12,7 +12,7 @@ from siggen.dynamics.structure.steel_disc import disc_inertia_kg_m2, disc_mass_k
 from siggen.gearbox.specimen import ToothMesh
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.spur_gear import SpurGear
-from siggen.keys.number import constant
+from siggen.keys.number import constant, each_of
 from siggen.names import Side
 
 
@@ -32,18 +32,15 @@ def gear_stage(dynamics: Dynamics, pair: GearPair) -> GearStage:
 
 def rotor_numbers(section: RotorSection, gear: SpurGear, face_width_m: float) -> Rotor:
     """Return a gear with both bearings of its shaft."""
-    mass, inertia = section.mass_kg, section.inertia_kg_m2
+    mass, inertia, bearing = section.mass_kg, section.inertia_kg_m2, section.bearing
+    stiffness_x, stiffness_y = map(constant, each_of(bearing.stiffness_n_per_m, 2))
+    damping_x, damping_y = map(constant, each_of(bearing.damping_n_s_per_m, 2))
+    axial_stiffness = constant(bearing.axial_stiffness_n_per_m)
     return Rotor(
         base_radius_m=gear.base_radius_m,
         mass_kg=disc_mass_kg(gear, face_width_m) if mass is None else constant(mass),
         inertia_kg_m2=disc_inertia_kg_m2(gear, face_width_m) if inertia is None else constant(inertia),
-        bearing=Bearing(
-            stiffness_x_n_per_m=constant(section.bearing_stiffness_x_n_per_m),
-            stiffness_y_n_per_m=constant(section.bearing_stiffness_y_n_per_m),
-            damping_x_n_s_per_m=constant(section.bearing_damping_x_n_s_per_m),
-            damping_y_n_s_per_m=constant(section.bearing_damping_y_n_s_per_m),
-            stiffness_z_n_per_m=constant(section.bearing_stiffness_z_n_per_m),
-        ),
+        bearing=Bearing(stiffness_x, stiffness_y, damping_x, damping_y, stiffness_z_n_per_m=axial_stiffness),
     )
 
 
@@ -54,7 +51,7 @@ def coupling_numbers(section: CouplingSection) -> Coupling:
 
 def ball_bearings(dynamics: Dynamics) -> tuple[tuple[Side, BallBearing], ...]:
     """Return each of both bearings of the shafts, pinion and gear, whose stiffness follows the load."""
-    sections = {Side.DRIVER: dynamics.pinion.bearing, Side.DRIVEN: dynamics.gear.bearing}
+    sections = {Side.DRIVER: dynamics.pinion.bearing.geometry, Side.DRIVEN: dynamics.gear.bearing.geometry}
     return tuple((side, section.bearing()) for side, section in sections.items() if section is not None)
 
 
@@ -62,7 +59,7 @@ def bending_shafts(dynamics: Dynamics, stage: GearStage, pair: GearPair) -> tupl
     """Return the shafts that bend, each with the moment of inertia of its gear about a diameter: J/2 + m b²/12."""
     if dynamics.shafts is None:
         return None
-    pairs = ((dynamics.shafts.pinion, stage.pinion), (dynamics.shafts.gear, stage.gear))
+    pairs = ((dynamics.shafts.driver, stage.pinion), (dynamics.shafts.driven, stage.gear))
     pinion, gear = (shaft_numbers(section, rotor, pair) for section, rotor in pairs)
     return pinion, gear
 

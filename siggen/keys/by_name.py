@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from pydantic import GetJsonSchemaHandler
-from pydantic_core import CoreSchema
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, core_schema
 
 from siggen.errors import Problem
 from siggen.keys.distributions import written_text
-from siggen.keys.problems import received_text
+from siggen.keys.problems import joined, received_text, refusal
 from siggen.keys.section import Section
 
 BY_NAME = ("states", "sensors")
+NO_NAME = "allowed: no key name here, since the name stands before the entry"
 SHOWN = 4
 """Names of a list that its refusal shows in the new form."""
 
@@ -28,6 +29,30 @@ class ByName:
         """Return the mapping."""
         entry = handler.resolve_ref_schema(handler(schema))["items"]
         return {"type": "object", "additionalProperties": {"anyOf": [entry, {"type": "null"}]}}
+
+
+class NamedParts(ByName):
+    """Marker of such a field inside a section, which reads and writes it; places in problems are those of a list."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """Read a mapping by name."""
+        written = core_schema.plain_serializer_function_ser_schema(written_by_name)
+        return core_schema.no_info_before_validator_function(self._listed, handler(source), serialization=written)
+
+    def _listed(self, value: object) -> object:
+        if isinstance(value, tuple):
+            return value
+        if not isinstance(value, Mapping):
+            raise refusal([refused_list("", value, self.allowed_text)])
+        entries = {str(key): entry for key, entry in value.items() if entry is not None}
+        problems = [
+            Problem(joined(key, "name"), received_text(entry["name"]), NO_NAME)
+            for key, entry in entries.items()
+            if isinstance(entry, Mapping) and "name" in entry
+        ]
+        if problems:
+            raise refusal(problems)
+        return [{"name": key, **entry} if isinstance(entry, Mapping) else entry for key, entry in entries.items()]
 
 
 def without_key_field(schema: dict[str, Any], field: str) -> None:
@@ -59,4 +84,4 @@ def refused_list(name: str, value: object, allowed: str) -> Problem:
     shown = {str(one["name"]): written_text({k: v for k, v in one.items() if k != "name"}) for one in entries[:SHOWN]}
     more = ", ..." if len(entries) > SHOWN else ""
     written = ", ".join(f"{key}: {entry}" for key, entry in shown.items())
-    return Problem(name, received_text(value), f"write {name}: {{{written}{more}}}")
+    return Problem(name, received_text(value), f"write {f'{name}: ' if name else ''}{{{written}{more}}}")

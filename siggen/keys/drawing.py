@@ -7,7 +7,7 @@ from itertools import product
 from typing import Any, TypeAlias, TypeVar
 
 from siggen.keys.distributions import DRAWN
-from siggen.keys.number import HIGH, LOW, MIDDLE, Within, at, constant
+from siggen.keys.number import HIGH, LOW, MIDDLE, Each, Within, at, constant, each_of
 from siggen.keys.section import Section
 
 SomeSection = TypeVar("SomeSection", bound=Section)
@@ -31,12 +31,23 @@ def draw(section: SomeSection, uniform: Uniforms, path: str) -> SomeSection:
     path : str
         Where the section stands in the configuration; keys below it are joined with dots.
     """
+    changed: dict[str, object] = {}
+    for name, field in type(section).model_fields.items():
+        value, below = getattr(section, name), f"{path}.{name}"
+        if (law := next((marker for marker in field.metadata if isinstance(marker, Within)), None)) is not None:
+            changed[name] = _drawn(value, uniform, below, law.count)
+        elif isinstance(value, Section):
+            changed[name] = draw(value, uniform, below)
+        elif isinstance(value, tuple) and value and all(isinstance(part, Section) and part.key_field for part in value):
+            changed[name] = tuple(draw(part, uniform, f"{below}.{getattr(part, part.key_field)}") for part in value)
+    return section.model_copy(update=changed)
 
-    def drawn(value: object, name: str) -> object:
-        is_drawn = isinstance(value, DRAWN)
-        return at(value, uniform(name)) if is_drawn else value  # type: ignore[arg-type]
 
-    return _replaced(section, drawn, path)
+def _drawn(value: Any, uniform: Uniforms, name: str, count: int) -> object:
+    if count:
+        numbers = enumerate(each_of(value, count))
+        return Each(each=tuple(_drawn(number, uniform, f"{name}.{place}", 0) for place, number in numbers))  # type: ignore[misc]
+    return at(value, uniform(name)) if isinstance(value, DRAWN) else value
 
 
 def corners(part: Callable[[Uniforms], Part], *of: str) -> Iterator[Part]:
@@ -90,14 +101,3 @@ def in_si(section: Section) -> dict[str, Any]:
         else:
             found[key] = number if number is None else constant(number)
     return found
-
-
-def _replaced(section: SomeSection, replacement: Callable[[object, str], object], path: str) -> SomeSection:
-    changed: dict[str, object] = {}
-    for name, field in type(section).model_fields.items():
-        value = getattr(section, name)
-        if any(isinstance(marker, Within) for marker in field.metadata):
-            changed[name] = replacement(value, f"{path}.{name}")
-        elif isinstance(value, Section):
-            changed[name] = _replaced(value, replacement, f"{path}.{name}")
-    return section.model_copy(update=changed)

@@ -15,6 +15,22 @@ NOW = {
     ".sham": "write acts: false",
     "stages": "write machine: with shafts, gears and meshes of your own names, in place of gears and stages",
     "variation.speed.rated_torque_nm": "leave it out: the slip belongs to dynamics.rated_torque_nm",
+    "dynamics.shafts.pinion": "write dynamics.shafts.driver",
+    "dynamics.shafts.gear": "write dynamics.shafts.driven",
+    ".bearing_stiffness_x_n_per_m": "write bearing: {stiffness_n_per_m: ...}, of both directions across the shaft",
+    ".bearing_stiffness_y_n_per_m": "write bearing: {stiffness_n_per_m: {each: [horizontal, vertical]}}",
+    ".bearing_stiffness_z_n_per_m": "write bearing: {axial_stiffness_n_per_m: ...}",
+    ".bearing_damping_x_n_s_per_m": "write bearing: {damping_n_s_per_m: ...}, of both directions across the shaft",
+    ".bearing_damping_y_n_s_per_m": "write bearing: {damping_n_s_per_m: {each: [horizontal, vertical]}}",
+    **{
+        f".{key}": "belongs to the geometry of a bearing: bearing: {geometry: {...}}"
+        for key in ("balls", "ball_diameter_mm", "pitch_diameter_mm", "clearance_um")
+    },
     **{f".{key}": f"write {now}" for key, now in RENAMED.items()},
 }
 """Former key -> the words of its refusal; behind a dot it is the last part of any path."""
+
+
+def former_key(path: str) -> str:
+    """Return how to write now what a former key said; nothing of other keys."""
+    return NOW.get(path) or NOW.get(f".{path.rpartition('.')[2]}", "")

@@ -32,8 +32,11 @@ def at(number: Number, u: float) -> float:
     return number.at(u) if LOW < u < HIGH else number.bounds()[u == HIGH]
 
 
-def bounds(number: Number) -> tuple[float, float]:
-    """Return the smallest and the largest value that a number may take."""
+def bounds(number: Number | Each) -> tuple[float, float]:
+    """Return the smallest and the largest value that a number, or one of several, may take."""
+    if isinstance(number, Each):
+        lows, highs = zip(*map(bounds, number.each), strict=True)
+        return min(lows), max(highs)
     return (number, number) if isinstance(number, float) else number.bounds()
 
 
@@ -60,6 +63,15 @@ class Each(Section):
 
     each: Annotated[tuple[float | Distribution, ...], Field(min_length=1)] = Field(description="in their order")
 
+    def __str__(self) -> str:
+        """Return it as a file writes it."""
+        return f"{{each: [{', '.join(map(number_text, self.each))}]}}"
+
+
+def each_of(numbers: Number | Each, count: int) -> tuple[Number, ...]:
+    """Return the number of each of so many things."""
+    return numbers.each if isinstance(numbers, Each) else (numbers,) * count
+
 
 @dataclass(frozen=True, slots=True)
 class Within(Parser):
@@ -73,6 +85,8 @@ class Within(Parser):
         Values other than numbers that are taken as they are (`None`, "pitch").
     each
         Whether a number for each of several things is taken too, as `Each`; two numbers in a list stay a range.
+    count
+        Of how many things, where that is always the same: then each draws a number of its own, of one law too.
     size
         Numbers of a list that the field holds, as a tuple, such as the two of a place; 0: it holds one number.
     """
@@ -83,6 +97,7 @@ class Within(Parser):
     below: float | None = None
     words: tuple[str | None, ...] = ()
     each: bool = False
+    count: int = 0
     size: int = 0
 
     @property
@@ -113,7 +128,8 @@ class Within(Parser):
         if self.each and isinstance(value, Each):
             return Each.model_construct(each=self._numbers(value.each))
         if self.each and isinstance(value, Mapping) and [*value] == ["each"]:
-            if not isinstance(value["each"], (list, tuple)) or not value["each"]:
+            listed = value["each"]
+            if not isinstance(listed, (list, tuple)) or not listed or (self.count and len(listed) != self.count):
                 raise self._refused(value)
             return Each(each=self._numbers(value["each"], "each"))  # type: ignore[arg-type]
         return self._number(value)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from siggen.keys.distributions import Choice, LogUniform, Normal, Uniform
+from siggen.keys.number import Each
 from siggen.keys.section import Section
 
 SomeSection = TypeVar("SomeSection", bound=Section)
@@ -49,6 +50,8 @@ def multiplied(value: Any, factor: float) -> Any:
     """Return a number, distribution or tuple of them times a factor; anything else as it is, and all by 1."""
     if isinstance(value, float):
         return value * factor
+    if isinstance(value, Each):
+        return value.model_copy(update={"each": multiplied(value.each, factor)})
     if isinstance(value, tuple):
         return tuple(multiplied(item, factor) for item in value)
     if isinstance(value, (Uniform, LogUniform, Normal, Choice)):

@@ -81,9 +81,9 @@ def machine(
             raise refused(f"meshes[{mesh['name']!r}]['gears']", repr(both), "the names of two gears, driving first")
         mesh["driver"], mesh["driven"] = both
     keys = {
-        f"machine.{kind}.{i}": f"{kind}[{one['name']!r}]"
+        f"machine.{kind}.{one['name']}": f"{kind}[{one['name']!r}]"
         for kind, several in listed.items()
-        for i, one in enumerate(several)
+        for one in several
     }
     rest: dict[str, Any] = {}
     steps = _steps(listed, torque, speed)
@@ -98,7 +98,8 @@ def machine(
         for one in several:
             one.setdefault(key, value)  # where rules know none: what is wrong is said of the file that this makes
     raw = {
-        "extends": "two_stage", "name": "machine", "machine": listed, "states": {"others": None, "healthy": {}},
+        "extends": "two_stage", "name": "machine", "machine": {"others": None, **_named(listed)},
+        "states": {"others": None, "healthy": {}},
         "operating_points": [{"speed_hz": speed, "torque_nm": torque}], "mesh_harmonics": 1, "fs_hz": FS_HZ, **rest,
     }  # fmt: skip
     with saying({**keys, "machine.": "", "operating_points.0.torque_nm": "rated_nm", "fs_hz": "rated_hz"}):
@@ -120,6 +121,14 @@ def _listed(argument: str, entries: Entries) -> list[dict[str, Any]]:
     if not isinstance(entries, Mapping) or not all(isinstance(one, Mapping) for one in entries.values()):
         raise refused(argument, repr(entries), "a mapping from names to mappings")
     return [{"name": name, **one} for name, one in entries.items()]
+
+
+def _named(listed: Mapping[str, list[dict[str, Any]]]) -> dict[str, Any]:
+    """Return what a file says of shafts, gears and meshes."""
+    return {
+        kind: {one["name"]: {key: value for key, value in one.items() if key != "name"} for one in several}
+        for kind, several in listed.items()
+    }
 
 
 def _steps(listed: Mapping[str, list[dict[str, Any]]], torque_nm: float, speed_hz: float) -> list[_Step]:
@@ -207,10 +216,10 @@ def _stand(shaft: dict[str, Any], gear: RotorNumbers, bearings: RotorNumbers) ->
     damping = [2.0 * ratio * (stiffness * gear.mass_kg) ** 0.5 for ratio in (0.02, 0.04)]
     shaft.setdefault("mass_kg", gear.mass_kg)
     shaft.setdefault("inertia_kg_m2", gear.inertia_kg_m2)
-    for axis in "xy":
-        low, high = (share * stiffness for share in SPREAD)
-        shaft.setdefault(f"bearing_stiffness_{axis}_n_per_m", {"log": [low, high]})
-        shaft.setdefault(f"bearing_damping_{axis}_n_s_per_m", {"log": damping})
+    between = {"log": [share * stiffness for share in SPREAD]}
+    sized = {"stiffness_n_per_m": between, "damping_n_s_per_m": {"log": damping}}
+    given = shaft.get("bearing", {})
+    shaft["bearing"] = {**sized, **given} if isinstance(given, Mapping) else given
 
 
 def planetary(

@@ -13,6 +13,7 @@ from siggen.config import GearsSection
 from siggen.config.pairs import PairSection
 from siggen.faults.flank_place import FACE_WIDTH, MODULE, SKEW
 from siggen.keys.scaling import grown, multiplied, scaled
+from siggen.names import SHAFT_OF
 from siggen.rig.pair_scales import PairScales, pair_scales
 from siggen.sensors.sensor import SIZE
 
@@ -115,15 +116,14 @@ def _dynamics(scales: PairScales) -> dict[str, float]:
     }
     for i, (wheel, end) in enumerate((("pinion", "input"), ("gear", "output"))):
         damping = (scales.bearing[i] * scales.mass[i]) ** 0.5
-        found[f"{wheel}.bearing_stiffness_z_n_per_m"] = scales.bearing[i]
-        for axis in "xy":
-            found[f"{wheel}.bearing_stiffness_{axis}_n_per_m"] = scales.bearing[i]
-            found[f"{wheel}.bearing_damping_{axis}_n_s_per_m"] = damping
         found |= {
+            f"{wheel}.bearing.stiffness_n_per_m": scales.bearing[i],
+            f"{wheel}.bearing.axial_stiffness_n_per_m": scales.bearing[i],
+            f"{wheel}.bearing.damping_n_s_per_m": damping,
             f"{wheel}.mass_kg": scales.mass[i],
             f"{wheel}.inertia_kg_m2": scales.inertia[i],
-            f"shafts.{wheel}.bearing_span_mm": scales.span[i],
-            f"shafts.{wheel}.diameter_mm": scales.bore[i],
+            f"shafts.{SHAFT_OF[wheel]}.bearing_span_mm": scales.span[i],
+            f"shafts.{SHAFT_OF[wheel]}.diameter_mm": scales.bore[i],
             f"{end}_coupling.stiffness_nm_per_rad": scales.coupling[i],
             f"{end}_coupling.damping_nm_s_per_rad": scales.coupling_damping[i],
         }

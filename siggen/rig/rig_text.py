@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from siggen.names import SHAFT_OF
 from siggen.rig.rig import Pair, Rig
 from siggen.rig.rig_numbers import ASSUMED, RigNumbers, rig_numbers
 
@@ -97,11 +98,11 @@ manufacture:
 
 
 def _dynamics(rig: Rig, numbers: RigNumbers) -> str:
-    shafts, stands = [rotor.shaft for rotor in numbers.rotors], ("pinion", "gear")
+    shafts = [rotor.shaft for rotor in numbers.rotors]
     on = [f"{shaft.bearing.kind} bearings of {shaft.bearing.bore_mm:.3g} mm bore" for shaft in shafts]
     given = [
         f"    {name}: {{diameter_mm: {_exact(shaft.diameter_mm)}}}"
-        for name, shaft in zip(stands, shafts, strict=True)
+        for name, shaft in zip(SHAFT_OF.values(), shafts, strict=True)
         if rig.bores_mm is not None
     ]
     lines = [

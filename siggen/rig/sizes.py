@@ -18,6 +18,7 @@ from siggen.errors import Problem
 from siggen.keys.merging import merged
 from siggen.keys.number import Number, bounds
 from siggen.keys.problems import received_text
+from siggen.names import SHAFT_OF
 from siggen.rig.rig import Rig
 from siggen.rig.rig_numbers import RotorNumbers, rig_numbers
 
@@ -77,8 +78,8 @@ def sizes(rig: Rig) -> dict[str, Any]:
             for which, k, c in couplings
         },
         "shafts": {
-            wheel: {"bearing_span_mm": _rounded(shaft.span_mm, 15), "diameter_mm": _rounded(shaft.diameter_mm, 15)}
-            for wheel, shaft in zip(WHEELS, shafts, strict=True)
+            key: {"bearing_span_mm": _rounded(shaft.span_mm, 15), "diameter_mm": _rounded(shaft.diameter_mm, 15)}
+            for key, shaft in zip(SHAFT_OF.values(), shafts, strict=True)
         },
     }
 
@@ -101,7 +102,7 @@ def _rig(gears: GearsSection, torque_nm: float, speed_hz: tuple[float, float], d
 
 def _diameter_mm(dynamics: Mapping[str, Any], wheel: str) -> float | None:
     shafts = dynamics.get("shafts")
-    given = shafts.get(wheel) if isinstance(shafts, Mapping) else None
+    given = shafts.get(SHAFT_OF[wheel]) if isinstance(shafts, Mapping) else None
     if not isinstance(given, Mapping) or "diameter_mm" not in given:
         return None
     return _middle(ShaftSection.model_validate({"diameter_mm": given["diameter_mm"]}).diameter_mm)
@@ -112,8 +113,10 @@ def _rotor(rotor: RotorNumbers) -> dict[str, Any]:
     return {
         "mass_kg": _rounded(rotor.mass_kg),
         "inertia_kg_m2": _rounded(rotor.inertia_kg_m2),
-        "bearing_stiffness_x_n_per_m": {"log": [_rounded(share * rotor.bearing_n_per_m) for share in SPREAD]},
-        "bearing_damping_x_n_s_per_m": {"log": [_rounded(one) for one in damping]},
+        "bearing": {
+            "stiffness_n_per_m": {"log": [_rounded(share * rotor.bearing_n_per_m) for share in SPREAD]},
+            "damping_n_s_per_m": {"log": [_rounded(one) for one in damping]},
+        },
     }
 
 

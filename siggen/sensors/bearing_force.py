@@ -42,7 +42,7 @@ class ForceWasher(SensorBase):
         """Yield bearings that the model has not."""
         yield from places.problems(self.place, places.bearings)
         if "axial" in self.axes and places.bearings and not places.helical:
-            allowed = "allowed: vertical, horizontal; spur teeth press on no bearing along the shaft (gears.helix_deg)"
+            allowed = "allowed: vertical, horizontal; spur teeth press on no bearing along the shaft (helix_deg)"
             yield Problem("axes", ", ".join(self.axes), allowed)
 
     @property

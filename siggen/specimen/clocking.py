@@ -19,7 +19,7 @@ def clocked_pitches(pairs: Sequence[GearPair], specimen: Specimen, uniform: Call
     turned = 0.0
     for number, (front, own) in enumerate(pairwise(pairs)):
         before, mesh = specimen.meshes[number : number + 2]
-        drawn = uniform(f"stages.{mesh.inner}.clocking")
+        drawn = uniform(f"machine.meshes.{mesh.inner}.clocking")
         if mesh.idler:
             # the first shaft turns forwards, every next one the other way
             sense = 1.0 if number % 2 else -1.0

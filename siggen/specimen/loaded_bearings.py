@@ -1,4 +1,4 @@
-"""Bearings of a drawn specimen under the mean load of its operating point: what `dynamics.<shaft>.bearing` stands for.
+"""Bearings of a drawn specimen under the mean load of its operating point: where a shaft gives their `geometry`.
 
 Teeth press along the line of action, under a torque below 0 along that of the back flanks; gears and shafts weigh. Each
 of the two bearings of a shaft bears half. Vibration about that load is small: bearings are linear about it.

@@ -19,7 +19,7 @@ from siggen.rig.rig_answers import rig_of
 from siggen.rig.rig_text import rig_text
 from tests.config.minimal import minimal
 
-SHAFTS = {"pinion": {"diameter_mm": 30, "bearing_span_mm": 120}, "gear": {"diameter_mm": 35, "bearing_span_mm": 120}}
+SHAFTS = {"driver": {"diameter_mm": 30, "bearing_span_mm": 120}, "driven": {"diameter_mm": 35, "bearing_span_mm": 120}}
 
 
 def refusals(**changes: object) -> dict[str, str]:
@@ -39,8 +39,8 @@ def refusals(**changes: object) -> dict[str, str]:
         ({"housing__wall_mm": 50.0}, "housing.wall_mm", "a quarter of the least inner length"),
         ({"housing__wall_mm": 11.0, "housing__width_mm": 40.0}, "housing.wall_mm", "at most 10 mm"),
         (
-            {"dynamics__shafts": {"pinion": {"diameter_mm": 44}, "gear": {"diameter_mm": 125}}},
-            "dynamics.shafts.gear.diameter_mm",
+            {"dynamics__shafts": {"driver": {"diameter_mm": 44}, "driven": {"diameter_mm": 125}}},
+            "dynamics.shafts.driven.diameter_mm",
             "both bearings fit into one wall",
         ),
     ],

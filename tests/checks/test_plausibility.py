@@ -15,7 +15,7 @@ SLIPS = {
     "modulus in Pa": "gears.youngs_modulus_gpa=206e9",
     "torque in kN m": "operating_points.0.torque_nm=0.04",
     "torque in N mm": "operating_points.0.torque_nm=40000",
-    "bearings in N/mm": "dynamics.pinion.bearing_stiffness_x_n_per_m=2e5",
+    "bearings in N/mm": "dynamics.pinion.bearing.stiffness_n_per_m=2e5",
     "bolts in N/mm": "housing.bolts.axial_stiffness_n_per_m=8e4",
     "couplings in N mm": "dynamics.input_coupling.stiffness_nm_per_rad=6.3e6",
     "width in m": "gears.face_width_mm=0.02",
@@ -65,10 +65,10 @@ def test_a_slip_of_units_is_refused_or_named(slip: str) -> None:
 
 
 def test_a_record_is_measured_by_the_turns_of_the_slowest_shaft_which_is_called_by_name() -> None:
-    found = told(mill(duration_s=0.5, machine=with_machine("meshes", 1, module_mm=60.0)))
+    found = told(mill(duration_s=0.5, machine=with_machine("meshes", "fast", module_mm=60.0)))
     assert "turns of the shaft output in a record 1.88; usual" in found  # 0.5 s x 30 Hz x 18/47 x 17/52
     assert "turns of the carrier in a record 2" in told("planetary", ["duration_s=0.4"])
-    assert "machine.meshes.1.module_mm: module [mm] 60" in found
+    assert "machine.meshes.fast.module_mm: module [mm] 60" in found
 
 
 def test_idealised_sets_say_what_they_lack() -> None:

@@ -25,7 +25,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def with_shafts(model: str = "casing", **pinion: float) -> dict[str, object]:
-    return minimal(dynamics={"model": model, "shafts": {"pinion": pinion}})
+    return minimal(dynamics={"model": model, "shafts": {"driver": pinion}})
 
 
 @pytest.mark.parametrize(
@@ -43,7 +43,7 @@ def with_shafts(model: str = "casing", **pinion: float) -> dict[str, object]:
 def test_impossible_shafts_are_refused_by_key(pinion: dict[str, float], key: str, words: str) -> None:
     with pytest.raises(ConfigError) as refused:
         load_config(with_shafts(**pinion))
-    assert f"dynamics.shafts.pinion.{key}" in str(refused.value)
+    assert f"dynamics.shafts.driver.{key}" in str(refused.value)
     assert words in str(refused.value)
 
 
@@ -101,17 +101,17 @@ def test_shafts_that_tilt_beyond_the_model_under_the_steady_torque_are_refused_w
     with pytest.raises(ConfigError, match=r"allowed: a tilt of at most \d+ urad") as refused:
         load_config(file)
     told = str(refused.value)
-    assert f"dynamics.shafts.pinion.diameter_mm: received {pinion['diameter_mm']}" in told
+    assert f"dynamics.shafts.driver.diameter_mm: received {pinion['diameter_mm']}" in told
     assert f"(line {line})" in told
     thick = float(re.search(r"from ([\d.]+) mm on", told).group(1))
     load_config(with_shafts(**pinion | {"diameter_mm": thick}))
-    with pytest.raises(ConfigError, match=rf"pinion\.diameter_mm: received {thick - 0.2:.4g}.* from {thick:g} mm on"):
+    with pytest.raises(ConfigError, match=rf"driver\.diameter_mm: received {thick - 0.2:.4g}.* from {thick:g} mm on"):
         load_config(with_shafts(**pinion | {"diameter_mm": round(thick - 0.2, 6)}))
 
 
 def test_soft_shafts_are_refused_though_some_gearboxes_have_their_gear_in_the_middle() -> None:
     around = [0.4, 0.6]
-    with pytest.raises(ConfigError, match=r"pinion.diameter_mm: received 5.0.* from [\d.]+ mm on"):
+    with pytest.raises(ConfigError, match=r"driver.diameter_mm: received 5.0.* from [\d.]+ mm on"):
         load_config(with_shafts(diameter_mm=5.0, bearing_span_mm=140.0, gear_position=around))
 
 

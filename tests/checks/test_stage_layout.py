@@ -35,7 +35,7 @@ def told(raw: dict[str, Any]) -> Problem:
 def test_gears_of_one_shaft_need_one_and_a_half_times_their_faces_between_its_bearings() -> None:
     """20 and 30 mm wide, at a third and at two thirds: they touch at (20 + 30)/2 = span/3."""
     problem = told(one_more(span_mm=[74.9, 160]))
-    assert problem.path == "machine.shafts.1.span_mm"
+    assert problem.path == "machine.shafts.gear.span_mm"
     assert problem.received == "74.9 mm for faces of 50 mm together"
     assert "at least 75 mm" in problem.allowed
     assert load_config(one_more(span_mm=75.0)).config.stages
@@ -46,7 +46,7 @@ def test_gears_of_one_shaft_need_one_and_a_half_times_their_faces_between_its_be
 )
 def test_axes_a_little_apart_are_refused(gears: dict[str, Any]) -> None:
     problem = told(one_more(direction_deg=180.0, gears=gears))
-    assert problem.path == "machine.meshes.1.direction_deg"
+    assert problem.path == "machine.meshes.slow.direction_deg"
     apart_mm = abs(65.0 - 0.5 * gears["module_mm"] * (17 + gears["gear"]["teeth"]))
     assert f"the axis of slow_shaft stands {apart_mm:.4g} mm from that of pinion_shaft" in problem.received
     assert "at least 32 mm, the radii of both shafts" in problem.allowed

@@ -73,7 +73,7 @@ def test_all_digits_that_a_user_gives_are_written(tmp_path: Path) -> None:
     point = config.config.operating_points[0]
     assert (point.speed_hz, point.torque_nm.low, point.torque_nm.high) == (24.1667, 60.55, 61.123456)
     assert (config.config.gears.module_mm, config.config.gears.face_width_mm) == (1.5125, 20.1255)
-    assert (config.config.gears.pinion.bore_radius_mm, config.config.dynamics.shafts.pinion.diameter_mm) == (
+    assert (config.config.gears.pinion.bore_radius_mm, config.config.dynamics.shafts.driver.diameter_mm) == (
         10.1726,
         20.3452,
     )

@@ -9,19 +9,18 @@ from tests.config.minimal import by_name
 from tests.config.staged import SPALL
 
 MACHINE: dict[str, Any] = {
-    "shafts": [{"name": "input"}, {"name": "middle"}, {"name": "output"}],
-    "gears": [
-        {"name": "a", "teeth": 18, "bore_radius_mm": 12.0, "shaft": "input"},
-        {"name": "b", "teeth": 27, "bore_radius_mm": 12.0, "shaft": "middle"},
-        {"name": "c", "teeth": 35, "bore_radius_mm": 15.0, "shaft": "output"},
-    ],
-    "meshes": [
-        {"name": "first", "driver": "a", "driven": "b", "module_mm": 2.0, "face_width_mm": 20.0},
-        {
-            "name": "second", "driver": "b", "driven": "c", "module_mm": 2.0, "face_width_mm": 20.0,
-            "direction_deg": 60.0,
+    "shafts": {"input": {}, "middle": {}, "output": {}},
+    "gears": {
+        "a": {"teeth": 18, "bore_radius_mm": 12.0, "shaft": "input"},
+        "b": {"teeth": 27, "bore_radius_mm": 12.0, "shaft": "middle"},
+        "c": {"teeth": 35, "bore_radius_mm": 15.0, "shaft": "output"},
+    },
+    "meshes": {
+        "first": {"driver": "a", "driven": "b", "module_mm": 2.0, "face_width_mm": 20.0},
+        "second": {
+            "driver": "b", "driven": "c", "module_mm": 2.0, "face_width_mm": 20.0, "direction_deg": 60.0,
         },
-    ],
+    },
 }  # fmt: skip
 
 
@@ -36,8 +35,6 @@ def idler(**changes: Any) -> dict[str, Any]:
     return mill(**{"machine": MACHINE, "states": by_name(states), **changes})
 
 
-def with_idler(key: str, index: int, **changes: Any) -> dict[str, Any]:
+def with_idler(key: str, name: str, **changes: Any) -> dict[str, Any]:
     """Return the machine with keys of one shaft, gear or mesh changed."""
-    entries = list(MACHINE[key])
-    entries[index] = {**entries[index], **changes}
-    return {**MACHINE, key: entries}
+    return {**MACHINE, key: {**MACHINE[key], name: {**MACHINE[key][name], **changes}}}

@@ -8,19 +8,19 @@ from tests.config.minimal import minimal
 from tests.config.staged import SPALL
 
 MACHINE: dict[str, Any] = {
-    "shafts": [{"name": "output", "mass_kg": 6.0}, {"name": "input"}, {"name": "middle", "span_mm": 120.0}],
-    "gears": [
-        {"name": "karl", "teeth": 52, "bore_radius_mm": 25.0, "shaft": "output"},
-        {"name": "ida", "teeth": 18, "bore_radius_mm": 12.0, "shaft": "input"},
-        {"name": "otto", "teeth": 47, "bore_radius_mm": 15.0, "shaft": "middle"},
-        {"name": "eva", "teeth": 17, "bore_radius_mm": 15.0, "shaft": "middle"},
-    ],
-    "meshes": [
-        {"name": "slow", "driver": "eva", "driven": "karl", "module_mm": 3.0, "face_width_mm": 30.0},
-        {"name": "fast", "driver": "ida", "driven": "otto", "module_mm": 2.0, "face_width_mm": 20.0},
-    ],
+    "shafts": {"output": {"mass_kg": 6.0}, "input": {}, "middle": {"span_mm": 120.0}},
+    "gears": {
+        "karl": {"teeth": 52, "bore_radius_mm": 25.0, "shaft": "output"},
+        "ida": {"teeth": 18, "bore_radius_mm": 12.0, "shaft": "input"},
+        "otto": {"teeth": 47, "bore_radius_mm": 15.0, "shaft": "middle"},
+        "eva": {"teeth": 17, "bore_radius_mm": 15.0, "shaft": "middle"},
+    },
+    "meshes": {
+        "slow": {"driver": "eva", "driven": "karl", "module_mm": 3.0, "face_width_mm": 30.0},
+        "fast": {"driver": "ida", "driven": "otto", "module_mm": 2.0, "face_width_mm": 20.0},
+    },
 }
-"""Its lists are in no order of power."""
+"""In no order of power."""
 
 
 def mill(**changes: Any) -> dict[str, Any]:
@@ -36,8 +36,6 @@ def mill(**changes: Any) -> dict[str, Any]:
     return {key: value for key, value in found.items() if key != "gears"}
 
 
-def with_machine(key: str, index: int, **changes: Any) -> dict[str, Any]:
+def with_machine(key: str, name: str, **changes: Any) -> dict[str, Any]:
     """Return the machine with keys of one shaft, gear or mesh changed."""
-    entries = list(MACHINE[key])
-    entries[index] = {**entries[index], **changes}
-    return {**MACHINE, key: entries}
+    return {**MACHINE, key: {**MACHINE[key], name: {**MACHINE[key][name], **changes}}}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from tests.config.minimal import minimal
+from tests.config.minimal import by_name, minimal
 
 SPALL = {"kind": "spall", "face_length_mm": 8.0, "profile_length_mm": 1.0, "depth_mm": 0.2}
 FAST = {
@@ -45,7 +45,7 @@ def in_a_row(
         direction = {key: stage[key] for key in ("direction_deg",) if key in stage}
         meshes.append({"name": name or "fast", "driver": both[0], "driven": both[1], **pair, **direction})
         front = name
-    return {"shafts": shafts, "gears": gears, "meshes": meshes}
+    return {"shafts": by_name(shafts), "gears": by_name(gears), "meshes": by_name(meshes)}
 
 
 def staged(stages: Sequence[Mapping[str, Any]] = (SLOW,), **changes: Any) -> dict[str, Any]:

@@ -52,8 +52,8 @@ def test_a_number_that_becomes_a_distribution_does_not_shift_its_neighbours():
 def test_a_null_that_becomes_a_distribution_does_not_shift_its_neighbours():
     stiff = {"log": [1e7, 1e9]}
     keys = {
-        "dynamics__pinion__bearing_stiffness_x_n_per_m": stiff,
-        "dynamics__gear__bearing_stiffness_y_n_per_m": stiff,
+        "dynamics__pinion__bearing__stiffness_n_per_m": stiff,
+        "dynamics__gear__bearing__stiffness_n_per_m": stiff,
     }
     before = numbers(drawn(config(**keys).dynamics))
     after = numbers(drawn(config(**keys, dynamics__pinion__mass_kg=SPREAD).dynamics))

@@ -65,7 +65,7 @@ def test_a_key_of_an_extended_file_is_found_there_unless_a_list_or_kind_replaces
 
 # what is written in place of what; key, and what is said
 BAD = [
-    ("      bearing_span_mm: ", "      bearing_span_mm: 0.0 #", "dynamics.shafts.pinion.bearing_span_mm"),
+    ("      bearing_span_mm: ", "      bearing_span_mm: 0.0 #", "dynamics.shafts.driver.bearing_span_mm"),
     ("  lead_misalignment_um: ", "  lead_misalignment_um: 1e6 #", "manufacture.lead_misalignment_um"),
     ("  crowning_um: ", "  crowning_um: -1 #", "manufacture.crowning_um"),
     ("  like: laboratory\n", "  like: laboratory\n  machines: {density_n_per_sqrt_hz: 1e9}\n",

@@ -40,7 +40,10 @@ def test_gears_that_bear_each_others_usual_names_keep_them_in_columns_labels_and
     """The driver is called gear and runs on a shaft gear, what it drives is called pinion."""
     called = {"ida": "gear", "otto": "pinion", "input": "gear", "middle": "pinion", "eva": "Eva"}
     renamed = {
-        part: [{key: called.get(str(value), value) for key, value in one.items()} for one in MACHINE[part]]
+        part: {
+            called.get(name, name): {key: called.get(str(value), value) for key, value in one.items()}
+            for name, one in MACHINE[part].items()
+        }
         for part in MACHINE
     }
     damage = {**SPALL, "gear": "gear", "teeth": [3]}
@@ -64,59 +67,79 @@ def test_its_own_file_reads_the_same_and_never_says_pinion() -> None:
 
 
 def test_states_change_shafts_by_their_place_in_the_machine() -> None:
-    key = "machine.shafts.1.bearing_stiffness_x_n_per_m"
+    key = "machine.shafts.input.bearing.stiffness_n_per_m"
     state = {"name": "soft", "fault": "loose_bearing", "severity": "slight", "changes": {key: {"times": 0.5}}}
     config = load_config(mill(states=by_name([{"name": "healthy"}, state])))
-    assert [one.path for one in config.config.states[1].changes] == ["dynamics.pinion.bearing_stiffness_x_n_per_m"]
-    assert list(config.canonical()["states"]["soft"]["changes"]) == [key]
+    assert list(config.config.canonical()["states"]["soft"]["changes"]) == [key]
+    healthy, soft = (config.gearbox(0).in_state(state).train for state in range(2))
+    assert healthy is not None
+    assert soft is not None
+    bearings = [one.first.pinion.bearing.stiffness_x_n_per_m for one in (healthy, soft)]
+    assert bearings[1] == 0.5 * bearings[0]
 
 
 def loop(teeth: int) -> dict[str, Any]:
     """Return the machine with a mesh that drives the first shaft from the last one."""
-    gears = [{**WHEEL, "name": "x", "shaft": "output"}, {**WHEEL, "name": "y", "shaft": "input", "teeth": teeth}]
-    meshes = [*MACHINE["meshes"], {**MESH, "name": "back", "driver": "x", "driven": "y"}]
-    return {**MACHINE, "gears": [*MACHINE["gears"], *gears], "meshes": meshes}
+    gears = {"x": {**WHEEL, "shaft": "output"}, "y": {**WHEEL, "shaft": "input", "teeth": teeth}}
+    meshes = {**MACHINE["meshes"], "back": {**MESH, "driver": "x", "driven": "y"}}
+    return {**MACHINE, "gears": {**MACHINE["gears"], **gears}, "meshes": meshes}
 
 
 def beside(*gears: dict[str, Any], meshes: tuple[dict[str, Any], ...] = (), **shaft: Any) -> dict[str, Any]:
     """Return the machine with more gears and meshes, and a shaft if it is given."""
-    shafts = [*MACHINE["shafts"], *([shaft] if shaft else [])]
-    return {"shafts": shafts, "gears": [*MACHINE["gears"], *gears], "meshes": [*MACHINE["meshes"], *meshes]}
+    more = {"shafts": [shaft] if shaft else [], "gears": gears, "meshes": meshes}
+    return {part: {**MACHINE[part], **by_name(more[part])} for part in MACHINE}
+
+
+def renamed(part: str, old: str, new: str) -> dict[str, Any]:
+    """Return the machine with another name of a shaft or gear that nothing else says."""
+    return {**MACHINE, part: {new if name == old else name: one for name, one in MACHINE[part].items()}}
 
 
 ELSE = {**WHEEL, "name": "else", "shaft": "output"}
 MISTAKES: dict[str, tuple[dict[str, Any], str, str]] = {
-    "a gear on no shaft": (with_machine("gears", 1, shaft="inptu"), "machine.gears.1.shaft", "did you mean 'input'?"),
-    "a mesh of no gear": (with_machine("meshes", 0, driver="eve"), "machine.meshes.0.driver", "did you mean 'eva'?"),
-    "gears of one shaft": (with_machine("meshes", 0, driven="otto"), "machine.meshes.0.driven", "the shaft middle"),
-    "a name twice": (with_machine("gears", 1, name="otto"), "machine.gears.2.name", "every name once"),
-    "a name but for its case": (with_machine("gears", 1, name="OTTO"), "machine.gears.2.name", "'otto' beside 'OTTO'"),
-    "a word that is taken": (with_machine("shafts", 1, name="Load"), "machine.shafts.1.name", "another name than"),
-    "a gear in no mesh": (beside(ELSE), "machine.gears.4.name", "'else', in 0 meshes"),
+    "a gear on no shaft": (
+        with_machine("gears", "ida", shaft="inptu"), "machine.gears.ida.shaft", "did you mean 'input'?",
+    ),
+    "a mesh of no gear": (
+        with_machine("meshes", "slow", driver="eve"), "machine.meshes.slow.driver", "did you mean 'eva'?",
+    ),
+    "gears of one shaft": (
+        with_machine("meshes", "slow", driven="otto"), "machine.meshes.slow.driven", "the shaft middle",
+    ),
+    "a name but for its case": (renamed("gears", "ida", "OTTO"), "machine.gears.otto", "'otto' beside 'OTTO'"),
+    "a word that is taken": (renamed("shafts", "input", "Load"), "machine.shafts.Load", "another name than"),
+    "a gear in no mesh": (beside(ELSE), "machine.gears.else", "'else', in 0 meshes"),
     "a gear in three meshes": (
         beside(
             ELSE, {**ELSE, "name": "more", "shaft": "input"},
             meshes=tuple({**MESH, "name": f"m_{one}", "driver": "otto", "driven": one} for one in ("else", "more")),
-        ), "machine.gears.2.name", "'otto', in 3 meshes: fast, m_else, m_more; allowed: one mesh, or two of an idler",
+        ), "machine.gears.otto", "'otto', in 3 meshes: fast, m_else, m_more; allowed: one mesh, or two of an idler",
     ),
-    "a shaft apart": (beside(name="far"), "machine.shafts.3.name", "'far', which no mesh joins with the shaft output"),
+    "a shaft apart": (beside(name="far"), "machine.shafts.far", "'far', which no mesh joins with the shaft output"),
     "a loop that cannot turn": (
-        loop(23), "machine.meshes.2.name",
+        loop(23), "machine.meshes.back",
         "'back', which closes a loop with slow, fast and cannot turn: by its teeth the shaft input makes -0.8696 turns "
         "per turn of output, by theirs 7.987; allowed: one way from the motor to the load; leave one mesh of the loop",
     ),
-    "a gear called as a mesh": (with_machine("gears", 0, name="fast"), "machine.gears.0.name", "as a mesh is called"),
-    "a span of one gear's shaft": (with_machine("shafts", 1, span_mm=90.0), "machine.shafts.1.span_mm", "one gear"),
+    "a gear called as a mesh": (renamed("gears", "karl", "fast"), "machine.gears.fast", "as a mesh is called"),
+    "a list as in former files": (
+        {**MACHINE, "shafts": [{"name": "input"}, {"name": "output", "mass_kg": 6.0}]},
+        "machine.shafts", "write {input: {}, output: {mass_kg: 6}}",
+    ),
+    "a span of one gear's shaft": (
+        with_machine("shafts", "input", span_mm=90.0), "machine.shafts.input.span_mm", "one gear",
+    ),
     "a branch": (
         beside(
             ELSE | {"shaft": "side"}, {**ELSE, "name": "more", "shaft": "middle"}, name="side",
             meshes=({**MESH, "name": "aside", "driver": "more", "driven": "else"},),
-        ), "machine.shafts.2.name", "'middle', which drives 2 meshes",
+        ), "machine.shafts.middle", "'middle', which drives 2 meshes",
     ),
-    "too few teeth": (with_machine("gears", 3, teeth=3), "machine.gears.3.teeth", "from 5 to 1000"),
-    "a key that is none": (with_machine("gears", 3, teeht=3), "machine.gears.3.teeht", "did you mean 'teeth'?"),
+    "too few teeth": (with_machine("gears", "eva", teeth=3), "machine.gears.eva.teeth", "from 5 to 1000"),
+    "a key that is none": (with_machine("gears", "eva", teeht=3), "machine.gears.eva.teeht", "did you mean 'teeth'?"),
     "centres too close": (
-        with_machine("meshes", 0, centre_distance_mm=40.0), "machine.meshes.0.centre_distance_mm", "40",
+        with_machine("meshes", "slow", centre_distance_mm=40.0), "machine.meshes.slow.centre_distance_mm", "40",
     ),
 }  # fmt: skip
 
@@ -146,7 +169,7 @@ def test_an_idler_is_named_by_the_mesh_of_each_flank() -> None:
 
 def test_an_idler_whose_bore_is_drawn_has_one() -> None:
     bore = [10.0, 14.0]
-    drawn = load_config(idler(machine=with_idler("gears", 1, bore_radius_mm=bore))).gearbox(3)
+    drawn = load_config(idler(machine=with_idler("gears", "b", bore_radius_mm=bore))).gearbox(3)
     assert drawn.meshes[1].pair.pinion.bore_radius_m == drawn.pair.gear.bore_radius_m
 
 
@@ -178,14 +201,17 @@ def test_a_spalled_bearing_is_called_by_its_shaft_and_is_one_of_the_first_two(pl
 
 OF_IDLERS: dict[str, tuple[dict[str, Any], str, str]] = {
     "teeth of two sizes": (
-        {"machine": with_idler("meshes", 1, module_mm=2.5)}, "machine.meshes.1.module_mm", "an idler is one gear",
+        {"machine": with_idler("meshes", "second", module_mm=2.5)},
+        "machine.meshes.second.module_mm", "an idler is one gear",
     ),
-    "a span": ({"machine": with_idler("shafts", 1, span_mm=90.0)}, "machine.shafts.1.span_mm", "one gear"),
+    "a span": ({"machine": with_idler("shafts", "middle", span_mm=90.0)}, "machine.shafts.middle.span_mm", "one gear"),
     "tips in one another": (
-        {"machine": with_idler("meshes", 1, direction_deg=150.0)}, "machine.meshes.1.direction_deg", "tip radii",
+        {"machine": with_idler("meshes", "second", direction_deg=150.0)},
+        "machine.meshes.second.direction_deg", "tip radii",
     ),
     "two gears that drive it": (
-        {"machine": with_idler("meshes", 1, driver="c", driven="b")}, "machine.shafts.1.name", "is driven in 2 meshes",
+        {"machine": with_idler("meshes", "second", driver="c", driven="b")},
+        "machine.shafts.middle", "is driven in 2 meshes",
     ),
     "damage of no flank": (
         {"states": {"bad": {"severity": "slight", "damage": {**SPALL, "gear": "b"}}}},
@@ -197,9 +223,10 @@ OF_IDLERS: dict[str, tuple[dict[str, Any], str, str]] = {
         }}}}, "states.bad.damage.kind", "pits, spalls and cracks of an idler",
     ),
     "a name of a flank": (
-        {"machine": with_idler("gears", 2, name="second_b") | {"meshes": [
-            MACHINE_OF_IDLER["meshes"][0], {**MACHINE_OF_IDLER["meshes"][1], "driven": "second_b"},
-        ]}}, "machine.gears.2.name", "whose columns are its own",
+        {"machine": {
+            **with_idler("meshes", "second", driven="second_b"),
+            "gears": {{"c": "second_b"}.get(name, name): one for name, one in MACHINE_OF_IDLER["gears"].items()},
+        }}, "machine.gears.second_b", "whose columns are its own",
     ),
 }  # fmt: skip
 
@@ -216,13 +243,11 @@ def test_an_idler_that_cannot_be_is_refused_with_the_users_names(mistake: str) -
 
 
 def test_a_loop_whose_ratios_agree_turns_but_has_two_ways_for_power() -> None:
-    gears = [*MACHINE["gears"], *(
-        {**WHEEL, "name": name, "shaft": shaft, "teeth": teeth}
-        for name, shaft, teeth in (("p", "input", 18), ("q", "middle", 47))
-    )]  # fmt: skip
-    meshes = [*MACHINE["meshes"], {**MESH, "name": "twin", "driver": "p", "driven": "q"}]
+    twins = {"p": {**WHEEL, "shaft": "input", "teeth": 18}, "q": {**WHEEL, "shaft": "middle", "teeth": 47}}
+    gears = {**MACHINE["gears"], **twins}
+    meshes = {**MACHINE["meshes"], "twin": {**MESH, "driver": "p", "driven": "q"}}
     (problem,) = parse(mill(machine={**MACHINE, "gears": gears, "meshes": meshes})).problems
-    assert problem.path == "machine.meshes.2.name"
+    assert problem.path == "machine.meshes.twin"
     assert problem.received == "'twin', which closes a loop with fast"
 
 
@@ -269,7 +294,7 @@ def test_further_meshes_of_former_files_are_refused_with_the_word_for_them() -> 
 
 
 BEHIND: dict[str, tuple[dict[str, Any], str]] = {
-    "balls": ({"bearing": {}}, "bearing"),
+    "balls": ({"bearing": {"geometry": {}}}, "bearing.geometry"),
     "a seat off its axis": ({"eccentricity_um": 5.0}, "eccentricity_um"),
 }
 
@@ -277,6 +302,8 @@ BEHIND: dict[str, tuple[dict[str, Any], str]] = {
 @pytest.mark.parametrize("case", BEHIND)
 def test_what_only_the_first_two_shafts_can_have_is_refused_on_those_behind(case: str) -> None:
     shaft, key = BEHIND[case]
-    (problem,) = parse(mill(machine=with_machine("shafts", 0, **shaft), manufacture={"accuracy_class": 6})).problems
-    assert problem.path == f"machine.shafts.0.{key}"
+    (problem,) = parse(
+        mill(machine=with_machine("shafts", "output", **shaft), manufacture={"accuracy_class": 6})
+    ).problems
+    assert problem.path == f"machine.shafts.output.{key}"
     assert problem.allowed == "allowed: none on a shaft behind the second"

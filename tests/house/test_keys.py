@@ -34,7 +34,7 @@ def rows(page: str) -> Iterator[tuple[list[str], str]]:
         if line.startswith("#"):
             top = line.lstrip("# ").removesuffix(".NAME.damage").removesuffix(".NAME.path")
         elif found := KEY_LINE.match(line):
-            key = found["key"].replace("[]", "")
+            key = found["key"].replace("[]", "").replace(".NAME", "")
             words = [*([] if top == "Top level" else [top]), *key.split(".")]
             has_default = line.endswith(")")
             yield list(dict.fromkeys(words[:1] + words[-2:])), "preset" if has_default and not found["expert"] else ""

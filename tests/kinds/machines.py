@@ -101,7 +101,9 @@ def machine(**changes: Any) -> dict[str, Any]:
             "module_mm": 3.0, "face_width_mm": 20.0,
             "pinion": {"teeth": 18, "bore_radius_mm": 10.0}, "gear": {"teeth": 47, "bore_radius_mm": 15.0},
         },
-        "dynamics": {"model": "8dof", "pinion": {"bearing": {}}, "mesh": {"law": "pairs", "damage": "all"}},
+        "dynamics": {
+            "model": "8dof", "pinion": {"bearing": {"geometry": {}}}, "mesh": {"law": "pairs", "damage": "all"},
+        },
         "operating_points": [{"speed_hz": [28, 32], "torque_nm": 60.0}],
         "states": {"healthy": {}},
         "sensors": {"bearing": {}},

@@ -15,7 +15,7 @@ SPREAD = {
     "gears__module_mm": [2.5, 3.5],
     "gears__pinion__bore_radius_mm": {"one_of": [8, 9, 10]},
     "dynamics__mesh_damping_ratio": [0.05, 0.1],
-    "dynamics__gear__bearing_stiffness_y_n_per_m": {"log": [6e7, 1.2e8]},
+    "dynamics__gear__bearing__stiffness_n_per_m": {"log": [6e7, 1.2e8]},
     "operating_points": [
         {
             "speed_hz": [20, 35],

@@ -126,7 +126,7 @@ def test_the_card_of_a_machine_says_what_its_file_says() -> None:
     rows = {cells[1].strip(" `"): cells[2].strip() for line in text.splitlines() if len(cells := line.split("|")) > 2}
     assert "pinion" not in text + physics_section(config)
     assert not [key for key in rows if key.startswith(("gears", "stages", "planetary", "dynamics.gear"))]
-    expected = {"machine.gears.3.teeth": "17", "sensors.bearing.place": "input_bearing"}
+    expected = {"machine.gears.eva.teeth": "17", "sensors.bearing.place": "input_bearing"}
     assert {key: rows[key] for key in expected} == expected
     assert "gear eva" in rows["states.severe.damage"]
 

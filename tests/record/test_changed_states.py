@@ -112,7 +112,7 @@ def test_a_state_at_the_end_moves_no_other() -> None:
         ("fs_hz", 10000, "same in all states"),
         ("gears.module_mm", 4, "same in all states"),
         ("operating_points.0.speed_hz", {"times": 2}, "same in all states"),
-        ("sensors.bearing.name", "x", "keys with numbers"),
+        ("sensors.bearing.name", "x", "there is no such key here"),
         ("sensors.bearing.axes", 2, "keys with numbers"),
         ("dynamics.model", "8dof", "keys with numbers"),
         ("dynamics.mesh_dampin_ratio", 0.1, "did you mean 'mesh_damping_ratio'"),

@@ -15,8 +15,8 @@ from tests.simulated import simulate
 MIDDLE = [
     "specimens=1", "manufacture=null", "dynamics.shafts=null", "duration_s=0.2", "internals.quantities=[all]",
     "dynamics.mesh_damping_ratio=0.07", "dynamics.backlash_um=80", "dynamics.mesh.tip_relief_um=8",
-    *(f"dynamics.{gear}.bearing_stiffness_{axis}_n_per_m=2e8" for gear in ("pinion", "gear") for axis in "xy"),
-    *(f"dynamics.{gear}.bearing_damping_{axis}_n_s_per_m=1000" for gear in ("pinion", "gear") for axis in "xy"),
+    *(f"dynamics.{gear}.bearing.stiffness_n_per_m=2e8" for gear in ("pinion", "gear")),
+    *(f"dynamics.{gear}.bearing.damping_n_s_per_m=1000" for gear in ("pinion", "gear")),
     "housing.bolts.shear_stiffness_n_per_m=8e7", "housing.bolts.axial_stiffness_n_per_m=1.5e8",
     "dynamics.friction.oil_temperature_c=50", "dynamics.friction.roughness_um=0.4",
     "dynamics.friction.boundary_friction=0.09", "dynamics.friction.pit_roughness_um=2.0",

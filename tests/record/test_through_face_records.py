@@ -37,9 +37,8 @@ def record(chosen: SetDesign, record_id: int) -> SimulatedRecord:
 
 
 def test_damage_through_the_face_is_simulated_and_labelled() -> None:
-    chosen = config()
-    points = len(chosen.config.operating_points)
-    healthy, damaged = record(chosen, 0), record(chosen, points)
+    chosen = config(None, "operating_points=[{speed_hz: 25.0, torque_nm: 20.0}]")
+    healthy, damaged = record(chosen, 0), record(chosen, 1)
     assert damaged.labels["through_face"] is True
     # 1 mm of arc near the pitch point: l²/(8 R_e) with R_e of 6.7 mm and the edges' rounding of 0.1 mm.
     assert damaged.labels["sink_depth_um"] == pytest.approx(1e3 / (8.0 * 6.78), rel=0.03)

@@ -22,7 +22,7 @@ RANGE = {"log": [1e8, 2e8]}
 
 
 def family(*pairs: dict[str, Any], **changes: Any) -> Config:
-    return minimal(gears__pairs=list(pairs), dynamics__pinion__bearing_stiffness_x_n_per_m=RANGE, **changes)
+    return minimal(gears__pairs=list(pairs), dynamics__pinion__bearing__stiffness_n_per_m=RANGE, **changes)
 
 
 def hertz_pa2(pair: GearPair, torque_nm: float) -> float:
@@ -38,7 +38,7 @@ def root_pa(pair: GearPair, torque_nm: float) -> float:
 
 def test_the_pair_that_the_file_was_written_for_leaves_the_configuration_as_it_is() -> None:
     set_of_pairs = family({"teeth": [18, 47], "module_mm": 3.0, "face_width_mm": 20.0})
-    plain = minimal(dynamics__pinion__bearing_stiffness_x_n_per_m=RANGE)
+    plain = minimal(dynamics__pinion__bearing__stiffness_n_per_m=RANGE)
     assert pair_config(set_of_pairs, 0) == plain
     assert pair_config(set_of_pairs, 0).identity == plain.identity != set_of_pairs.identity
 
@@ -56,7 +56,7 @@ def test_a_pair_of_the_same_shape_and_twice_the_size_has_eight_masses_and_bears_
     damage = own.states[1].damage
     assert damage is not None
     assert (damage.semi_axis_face_mm, damage.depth_mm) == (0.6, 0.8)  # type: ignore[union-attr]
-    drawn = own.dynamics.pinion.bearing_stiffness_x_n_per_m
+    drawn = own.dynamics.pinion.bearing.stiffness_n_per_m
     assert drawn.high / drawn.low == pytest.approx(2.0)  # type: ignore[union-attr]
 
 
@@ -98,8 +98,8 @@ def test_a_machine_carried_over_is_the_one_that_siggen_init_writes() -> None:
         if section == "dynamics":
             _compare_reliefs(found, wanted)
             for wheel in ("pinion", "gear"):  # `siggen init` leaves the preset's, which spur teeth do not ask
-                found.pop(f".{wheel}.bearing_stiffness_z_n_per_m")
-                wanted.pop(f".{wheel}.bearing_stiffness_z_n_per_m")
+                found.pop(f".{wheel}.bearing.axial_stiffness_n_per_m")
+                wanted.pop(f".{wheel}.bearing.axial_stiffness_n_per_m")
         assert found == pytest.approx(wanted, rel=0.012)  # both files give three digits
 
 

@@ -18,7 +18,7 @@ STEEL_KG_M3 = 7850.0
 
 
 def sized(rated_nm: Any = 60.0, dynamics: dict[str, Any] | None = None, **changes: Any) -> SetDesign:
-    shafts = {"pinion": {}, "gear": {}}
+    shafts = {"driver": {}, "driven": {}}
     own = {"model": "casing", "shafts": shafts, "rated_torque_nm": rated_nm, **(dynamics or {})}
     return load_config(minimal(**{"dynamics": own, **changes}))
 
@@ -29,8 +29,8 @@ def test_rotors_are_steel_discs_on_their_shafts_and_couplings_are_damped_by_a_tw
     dynamics, gears, shafts = config.config.dynamics, config.config.gears, config.config.dynamics.shafts
     assert shafts is not None
     for rotor, wheel, shaft in (
-        (dynamics.pinion, gears.pinion, shafts.pinion),
-        (dynamics.gear, gears.gear, shafts.gear),
+        (dynamics.pinion, gears.pinion, shafts.driver),
+        (dynamics.gear, gears.gear, shafts.driven),
     ):
         outer, inner = 0.5e-3 * gears.module_mm * wheel.teeth, 0.5e-3 * shaft.diameter_mm  # type: ignore[operator]
         disc = STEEL_KG_M3 * pi * (outer**2 - inner**2) * 1e-3 * gears.face_width_mm  # type: ignore[operator]
@@ -38,28 +38,28 @@ def test_rotors_are_steel_discs_on_their_shafts_and_couplings_are_damped_by_a_tw
         assert rotor.mass_kg == pytest.approx(disc + rod, rel=6e-3)  # three digits
         inertia = 0.5 * disc * (outer**2 + inner**2) + 0.5 * rod * inner**2
         assert rotor.inertia_kg_m2 == pytest.approx(inertia, rel=6e-3)
-        low, high = bounds(rotor.bearing_stiffness_x_n_per_m)
+        low, high = bounds(rotor.bearing.stiffness_n_per_m)
         assert high / low == pytest.approx(1.33 / 0.75, rel=0.01)
-        assert rotor.bearing_stiffness_y_n_per_m == rotor.bearing_stiffness_x_n_per_m
     coupling, motor, pinion = dynamics.input_coupling, dynamics.motor_inertia_kg_m2, dynamics.pinion.inertia_kg_m2
     critical = 2.0 * sqrt(coupling.stiffness_nm_per_rad * motor * pinion / (motor + pinion))  # type: ignore[operator]
     assert coupling.damping_nm_s_per_rad == pytest.approx(0.05 * critical, rel=0.02)
 
 
 def test_twice_the_torque_is_twice_the_stiffness_of_couplings_and_more_of_bearings_by_a_third_power() -> None:
-    thick = {"shafts": {wheel: {"diameter_mm": 30.0} for wheel in ("pinion", "gear")}}
+    thick = {"shafts": {wheel: {"diameter_mm": 30.0} for wheel in ("driver", "driven")}}
     one, two = (sized(rated, thick).config.dynamics for rated in (60.0, 120.0))
     ratio = two.input_coupling.stiffness_nm_per_rad / one.input_coupling.stiffness_nm_per_rad  # type: ignore[operator]
     assert ratio == pytest.approx(2.0)
-    stiff = [bounds(each.gear.bearing_stiffness_x_n_per_m)[0] for each in (one, two)]
+    stiff = [bounds(each.gear.bearing.stiffness_n_per_m)[0] for each in (one, two)]
     assert stiff[1] / stiff[0] == pytest.approx(2 ** (1 / 3), rel=0.01)  # Hertz, of the same balls
 
 
 def test_what_a_file_gives_stays_and_nothing_bends_without_shafts() -> None:
-    given = {"mass_kg": 0.5, "bearing_stiffness_x_n_per_m": 3e8}
+    given = {"mass_kg": 0.5, "bearing": {"stiffness_n_per_m": 3e8}}
     dynamics = sized(dynamics={"pinion": given, "load_inertia_kg_m2": 7.0, "shafts": None}).config.dynamics
     assert (dynamics.pinion.mass_kg, dynamics.load_inertia_kg_m2, dynamics.shafts) == (0.5, 7.0, None)
-    assert dynamics.pinion.bearing_stiffness_y_n_per_m == 3e8
+    assert dynamics.pinion.bearing.stiffness_n_per_m == 3e8
+    assert dynamics.pinion.bearing.damping_n_s_per_m == sized().config.dynamics.pinion.bearing.damping_n_s_per_m
     assert dynamics.pinion.inertia_kg_m2 == sized().config.dynamics.pinion.inertia_kg_m2
 
 
@@ -93,8 +93,8 @@ def test_it_takes_the_place_of_the_sizes_of_a_file_that_is_extended(tmp_path: Pa
     assert bench.pinion.mass_kg == 1.0
     assert dynamics.shafts is not None
     assert bench.shafts is not None
-    assert bounds(dynamics.shafts.gear.diameter_mm)[0] == bounds(dynamics.shafts.gear.diameter_mm)[1]
-    assert dynamics.shafts.gear.gear_position == bench.shafts.gear.gear_position
+    assert bounds(dynamics.shafts.driven.diameter_mm)[0] == bounds(dynamics.shafts.driven.diameter_mm)[1]
+    assert dynamics.shafts.driven.gear_position == bench.shafts.driven.gear_position
     assert dynamics.friction == bench.friction
 
 

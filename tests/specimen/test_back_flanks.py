@@ -15,12 +15,12 @@ from siggen.specimen.motion import specimen_motion
 from siggen.specimen.structure import specimen_body
 from tests.config.minimal import minimal
 
-EVEN = {"bearing_stiffness_x_n_per_m": 1.6e8, "bearing_stiffness_y_n_per_m": 2e8, "mass_kg": 1.2}
+EVEN = {"bearing": {"stiffness_n_per_m": {"each": [1.6e8, 2e8]}}, "mass_kg": 1.2}
 STEP_S, STEPS = 1.0 / 51_200.0, 2_000
 
 
 SHAFT = {"bearing_span_mm": 100.0, "gear_position": 0.45, "diameter_mm": 25.0}
-HOUSED = {"model": "casing", "shafts": {"pinion": SHAFT, "gear": SHAFT}}
+HOUSED = {"model": "casing", "shafts": {"driver": SHAFT, "driven": SHAFT}}
 """In a box of plates, on shafts that tilt. Round equal gears and bearings the box is its own mirror image too."""
 
 

@@ -18,13 +18,13 @@ CONFIG = "tests/configs/casing.yaml"
 SHORT = ["specimens=1", "duration_s=0.02", "operating_points=[{speed_hz: 30.0, torque_nm: 20.0}]"]
 HEALTHY = "states={healthy: {}}"
 # So much damping that nothing but rounding is left of the shaft; no stiffness alone makes the scheme run away.
-DAMPED = "dynamics.pinion.bearing_damping_x_n_s_per_m"
+DAMPED = "dynamics.pinion.bearing.damping_n_s_per_m"
 
 
 @pytest.mark.parametrize(
     ("change", "named"),
     [
-        ("dynamics.pinion.bearing_stiffness_x_n_per_m=-1e8", "allowed: a number above 0"),
+        ("dynamics.pinion.bearing.stiffness_n_per_m=-1e8", "allowed: a number above 0"),
         ("dynamics.input_coupling.stiffness_nm_per_rad=-1", "allowed: a number above 0"),
         ("housing.mass_kg=0", "allowed: a number above 0"),
         ("housing.bolts.shear_stiffness_n_per_m=0", "allowed: a number above 0"),

@@ -54,7 +54,7 @@ def rms(values: FloatArray) -> float:
 @pytest.mark.parametrize("direction_deg", [60.0, -100.0])
 def test_no_mesh_notices_that_the_whole_machine_is_moved_and_turned_as_one_body(direction_deg: float) -> None:
     """Turned about the idler by ω, the gear at d moves by ω x d; shafts that turn back count their rotation so."""
-    config = load_config(idler(machine=with_idler("meshes", 1, direction_deg=direction_deg)))
+    config = load_config(idler(machine=with_idler("meshes", "second", direction_deg=direction_deg)))
     specimen = config.gearbox(0)
     found = structure(specimen)
     names, place = found.coordinates, np.radians(direction_deg)

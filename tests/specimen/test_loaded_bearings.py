@@ -19,8 +19,8 @@ from siggen.specimen.structure import specimen_bearings, structure
 from tests.config.minimal import by_name, config, minimal
 from tests.simulated import simulate
 
-CLEARANCE = "dynamics.pinion.bearing.clearance_um"
-STIFFNESS = "dynamics.gear.bearing_stiffness_y_n_per_m"
+CLEARANCE = "dynamics.pinion.bearing.geometry.clearance_um"
+STIFFNESS = "dynamics.gear.bearing.stiffness_n_per_m"
 LOOSE = {"name": "loose", "fault": "clearance", "severity": "slight", "changes": {CLEARANCE: {"times": 4.0}}}
 
 
@@ -31,7 +31,10 @@ def raw(clearance_um: float = 10.0, **changes: Any) -> dict[str, Any]:
         "states": by_name([{"name": "healthy"}, LOOSE]),
         "dynamics__model": "8dof",
     }
-    bearings = {"dynamics__pinion__bearing__clearance_um": clearance_um, "dynamics__gear__bearing": {}}
+    bearings = {
+        "dynamics__pinion__bearing__geometry__clearance_um": clearance_um,
+        "dynamics__gear__bearing__geometry": {},
+    }
     return minimal(**{**short, **bearings, **changes})
 
 
@@ -78,7 +81,7 @@ def test_a_shaft_that_hardly_bends_stands_on_its_bearings_as_without_shafts() ->
     """Both ends together carry the same, mixed terms too, through what the housing gives way."""
     stout = {"bearing_span_mm": 60.0, "diameter_mm": 38.0}
     plain = {"dynamics__model": "casing", "housing__kind": "rigid"}
-    with_shafts = made(**plain, dynamics__shafts={"pinion": stout, "gear": stout})
+    with_shafts = made(**plain, dynamics__shafts={"driver": stout, "driven": stout})
     short, without = (structure(one.gearbox(0)) for one in (with_shafts, made(**plain)))
     kept = [short.coordinates.index(name) for name in without.coordinates]
     for name, (force, _) in without.bearing_forces.items():
@@ -129,22 +132,24 @@ def test_plan_says_the_stiffness_of_every_bearing_load_and_changed_state() -> No
 
 
 def test_plan_says_which_given_stiffness_a_bearing_replaces_and_which_it_does_not() -> None:
-    given = {"dynamics__gear__bearing_stiffness_y_n_per_m": 1e8}
+    given = {"dynamics__gear__bearing__stiffness_n_per_m": 1e8}
     (note,) = (note for note in shaft_notes(made(**given).possible) if "not used" in note)
     assert note.startswith(f"{STIFFNESS}: not used")
-    assert "dynamics.gear.bearing: null" in note
-    without = made(**given, dynamics__gear__bearing=None).possible
+    assert "dynamics.gear.bearing.geometry: null" in note
+    without = made(**given, dynamics__gear__bearing__geometry=None).possible
     assert not [note for note in shaft_notes(without) if "not used" in note]
 
 
 @pytest.mark.parametrize(
     ("path", "change"),
     [
-        ("dynamics.pinion.bearing.clearance_um", {"clearance_um": -1.0}),
-        ("states.loose.changes.dynamics.pinion.bearing.clearance_um", {
+        ("dynamics.pinion.bearing.geometry.clearance_um", {"clearance_um": -1.0}),
+        ("states.loose.changes.dynamics.pinion.bearing.geometry.clearance_um", {
             "states": by_name([{"name": "healthy"}, {**LOOSE, "changes": {CLEARANCE: {"add": -30.0}}}])
         }),
-        ("dynamics.gear.bearing.ball_diameter_mm", {"dynamics__gear__bearing": {"ball_diameter_mm": 15.0}}),
+        ("dynamics.gear.bearing.geometry.ball_diameter_mm", {
+            "dynamics__gear__bearing__geometry": {"ball_diameter_mm": 15.0}
+        }),
         (f"states.loose.changes.{STIFFNESS}", {
             "states": by_name([{"name": "healthy"}, {**LOOSE, "changes": {STIFFNESS: {"times": 0.5}}}])
         }),

@@ -111,7 +111,7 @@ def test_teeth_and_bearings_carry_the_torque_of_their_shaft_at_rest() -> None:
 
 @cache
 def rubbing_record() -> dict[str, FloatArray]:
-    table = internals_table(config("duration_s=0.5"), 2)
+    table = internals_table(config("duration_s=0.5", "operating_points.2={speed_hz: 35.0, torque_nm: 40.0}"), 2)
     facts = {key.decode(): float(table.schema.metadata[key]) for key in (b"speed_hz", b"torque_nm")}
     columns = {name: table[name].to_numpy() for name in table.column_names}
     slow_s = 47 / (18 * 17 * facts["speed_hz"])  # one mesh of the second stage, several of the first

@@ -26,7 +26,7 @@ RECORD, SAMPLES = 12, 256  # 5 ms
 LONG = 16 * SAMPLES  # 80 ms
 TIGHT = 1e-7
 """Tolerance of scipy's steps: with it scipy errs by at most 1.2e-4 of the motion, against 1e-8."""
-KNOCKED_S = -0.12127
+KNOCKED_S = -0.1225
 """Before the record: a moment from which flanks meet ten times within 5 ms."""
 TOUCHES_N = 1.0
 KNOCKS = [(0.0, -0.3), (0.0, 0.5), (1.0, -0.3)]

@@ -216,7 +216,7 @@ def test_the_result_generates_a_set(folder: Path, said: str) -> None:
     ("changes", "more", "words"),
     [
         (
-            {"machine": with_machine("gears", 3, teeth=19)},
+            {"machine": with_machine("gears", "eva", teeth=19)},
             (),
             r"wrong.yaml: recordings do not show mesh slow \(19/52 teeth\): ",
         ),
