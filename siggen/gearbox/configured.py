@@ -33,7 +33,6 @@ def _drawn(config: Config, specimen_id: int) -> Config:
     return with_drawn_parts(config if index is None else pair_config(config, index), specimen_id)
 
 
-@lru_cache(maxsize=16)
 def _inspected(config: Config, specimen_id: int) -> Config:
     """Return the configuration of a gearbox whose inspections are states, as if a user had listed all outlines."""
     assert config.life is not None
@@ -52,7 +51,6 @@ def inspection_count(config: Config, specimen_id: int) -> int:
     return config.state_count if config.life is None else len(gearbox_life(config, specimen_id).ages_h)
 
 
-@lru_cache(maxsize=64)
 def pair_config(config: Config, index: int) -> Config:
     """Return the configuration of the gearboxes with one of the pairs of `gears.pairs`."""
     sections: dict[str, Any] = {name: getattr(config, name) for name in type(config).model_fields}

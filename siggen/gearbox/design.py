@@ -276,7 +276,8 @@ class SetDesign:
 
     def drawn_points(self, number: int) -> tuple[OperatingPoint, ...]:
         """Return speeds and torques of a gearbox; the same for all of its states."""
-        return tuple(draw_operating_point(self.config, number, place) for place in range(self.points))
+        own = gearbox_config(self.config, number)
+        return tuple(draw_operating_point(own, number, place) for place in range(self.points))
 
     def with_passed(
         self, sensors: Sequence[SensorBase], shapes: Mapping[str, tuple[tuple[Fault, ...], bool]]

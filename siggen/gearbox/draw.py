@@ -135,10 +135,9 @@ def _planets(
     return PlanetaryGears(teeth, pair, ring, stage, tuple(errors.tolist()), meshes)
 
 
-def draw_operating_point(config: Config, specimen_id: int, operating_point_id: int) -> OperatingPoint:
-    """Return an operating point of a specimen; the same for all of its states."""
-    uniform = named_uniforms(config.seed, Stream.OPERATING_POINT, specimen_id, operating_point_id)
-    own = gearbox_config(config, specimen_id)
+def draw_operating_point(own: Config, specimen_id: int, operating_point_id: int) -> OperatingPoint:
+    """Return an operating point of a specimen by its own configuration; the same for all of its states."""
+    uniform = named_uniforms(own.seed, Stream.OPERATING_POINT, specimen_id, operating_point_id)
     ranges = own.operating_points[operating_point_id]
     return OperatingPoint(
         speed_hz=at(ranges.speed_hz, uniform("speed_hz")),

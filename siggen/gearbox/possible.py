@@ -161,7 +161,7 @@ class PossibleGearbox:
         """Torque of the motor's slip."""
         return rated_nm(self.config.dynamics, self.config.operating_points)
 
-    @cached_property
+    @property
     def bending(self) -> StiffnessOptions:
         """How teeth bend."""
         return stiffness_options(self.config.stiffness)

@@ -245,7 +245,7 @@ class Gearbox:
         along = word in (places.pressed_along if order == 0 else places.moved_along)
         return (*DIRECTIONS[:2], *(("axial",) if along else ()))
 
-    @cached_property
+    @property
     def _words(self) -> dict[str, tuple[str, str]]:
         """What can be read -> its kind, and its word in the short form of files."""
         places = self._design.places
@@ -274,7 +274,7 @@ class Gearbox:
             return next(iter(self._seats.values()))._replace(word=word)
         return self._seats[one_of("on", damage.on, tuple(self._seats))]
 
-    @cached_property
+    @property
     def _seats(self) -> dict[str, DamagedPlace]:
         """Name of every gear -> where it is."""
         specimen, meshes = self._specimen, self._design.names.meshes

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 
 from siggen.arrays import FloatArray
@@ -77,7 +75,6 @@ def quantity_column(name: str, names: Names) -> Column:
     return Column(name, pa.float32(), unit, meaning)
 
 
-@cache
 def _meanings(names: Names) -> dict[str, str]:
     """Return name -> meaning of the quantities of all meshes."""
     return {

@@ -8,7 +8,7 @@ from siggen.checks.loading import load_config
 from siggen.gearbox.configured import gearbox_config
 from siggen.gearbox.design import SetDesign
 from siggen.gears.contact import contact_table
-from siggen.gears.damage import flank_damage, irregular, outlines
+from siggen.gears.damage import flank_damage
 from siggen.gears.stiffness import compliance
 from siggen.record.specimen_state import StateTeeth, state_teeth
 from siggen.specimen import contact
@@ -18,8 +18,6 @@ SHARED = (
     contact._healthy_tables,
     contact_table._healthy,
     flank_damage._rows_of,
-    irregular._strip_rows,
-    outlines.trapezoids,
     compliance._pit_pieces,
 )
 CONFIG = gearbox_config(load_config("configs/bench.yaml", ["specimens=20"]).config, 3)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from math import cos, pi
 from typing import NamedTuple
 
@@ -127,14 +126,12 @@ def _teeth(unit: ToothKernel, rest: PairRest, i: int, face_width_m: float, kappa
     return tooth_kernel(unit, float(rest.tooth_m_per_n[i]), face_width_m, kappa_per_pa)
 
 
-@lru_cache(maxsize=8)
 def _reference_width(pair: GearPair) -> float:
     """Return Hertz's half width of the reference force in the middle of the path [m]."""
     middle = np.array([0.5 * (pair.contact_start_m + pair.contact_end_m)])
     return float(half_width(pair, middle, reference_force_n(pair))[0])
 
 
-@lru_cache(maxsize=8)
 def _typical_depth(pair: GearPair) -> float:
     """Return Weber and Banaschek's depth in the middle of the path [m]."""
     middle = 0.5 * (pair.contact_start_m + pair.contact_end_m)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from math import isfinite, sqrt, tan
 
 import numpy as np
@@ -18,7 +17,6 @@ from siggen.names import Side
 READINGS = ("axial", "radial", "arc")
 
 
-@lru_cache(maxsize=64)  # asked for once for every pit
 def flank_heights(gear: SpurGear) -> tuple[float, float]:
     """Return the heights x of the ends of the flank, ascending: start of the involute and tip, of rings turned [m]."""
     low, high = gear.flank_rolls_rad

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -151,7 +150,6 @@ class IrregularSpall(OnFlank):
         return {**OnFlank.table_row(self), "edge_radius_mm": 1e3 * self.edge_radius_m, "strip_depth_mm": depths}
 
 
-@lru_cache(maxsize=32)  # a grown spall asks all milder ones
 def _strip_rows(spall: IrregularSpall) -> tuple[tuple[float, ...], ...]:
     dish, span = spall.floor == "dish", spall.outline.height_range_m
     found: list[tuple[float, ...]] = []

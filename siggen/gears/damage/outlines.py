@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
 from itertools import pairwise
 from math import isfinite
 from typing import TypeAlias
@@ -173,7 +172,6 @@ def _trapezoid_row(sides: tuple[float, ...], middle: float, half: float, depth: 
     return (*box, depth, float(dish), 1.0, low, high, left_low, right_low, left_high, right_high)
 
 
-@lru_cache(maxsize=4096)
 def trapezoids(polygon: Polygon) -> tuple[tuple[float, ...], ...]:
     """Return a polygon without problems as trapezoids (low, high, left and right at low, left and right at high)."""
     corners = [(float(height), float(face)) for height, face in polygon.vertices_m]

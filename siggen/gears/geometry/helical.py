@@ -14,7 +14,6 @@ there a contact is softer by 1/cos β_b and a tooth, cut over b/cos β, by 1/cos
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import lru_cache
 from math import atan, cos, tan
 
 import numpy as np
@@ -25,7 +24,6 @@ from siggen.gears.geometry.spur_gear import SpurGear
 from siggen.names import Side
 
 
-@lru_cache(maxsize=64)
 def normal_pair(pair: GearPair) -> GearPair:
     """Return the spur pair whose teeth are the normal sections of a helical pair, as long as its teeth.
 

@@ -7,7 +7,6 @@ Equations: reference, standard literature (involute spur gears, ISO 21771 for pr
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from math import atan, cos, pi, sin, sqrt, tan
 
 import numpy as np
@@ -250,13 +249,11 @@ def _span(values: FloatArray) -> str:
     return f"{np.min(values):.6g} to {np.max(values):.6g}" if values.size else "(empty)"
 
 
-@lru_cache(maxsize=256)
 def _turning_height_m(gear: SpurGear) -> float:
     """Return the height at which the involute turns over [m]."""
     return float(gear.height_m(0.5 * pi + gear.base_half_angle_rad))
 
 
-@lru_cache(maxsize=256)
 def _handover(gear: SpurGear) -> tuple[float, float]:
     if not gear.undercut:
         return gear.pressure_angle_rad, gear._rack_flank_end_roll
