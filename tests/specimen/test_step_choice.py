@@ -79,8 +79,11 @@ def test_another_operating_point_changes_no_steps() -> None:
 
 
 def test_slow_gears_without_friction_take_steps_of_1_4_rad_of_the_teeth_s_vibration() -> None:
-    """A hundredth of the tolerance asks for a tenth of the step. The vibration is found by general eigenvalues."""
-    slow = ["operating_points=[{speed_hz: 5, torque_nm: 60}]", "dynamics.friction.model=off"]
+    """A hundredth of the tolerance asks for a tenth of the step. The vibration is found by general eigenvalues.
+
+    Gears that tilt have faster modes, to which the mesh contributes nothing.
+    """
+    slow = ["operating_points=[{speed_hz: 5, torque_nm: 60}]", "dynamics.friction.model=off", "dynamics.shafts=null"]
     config = loaded(*slow, "dynamics.integration_tolerance=1e-5")
     mesh = specimen_state(config.gearbox(0), 0).mesh
     structure, tables = mesh.structure, mesh.every[0].mesh.tables
@@ -138,7 +141,7 @@ def test_where_nothing_decays_all_of_the_start_is_left() -> None:
 
 
 def test_levels_are_compared_where_teeth_part_and_samples_have_nothing_in_common() -> None:
-    (rattling,) = simulate(loaded("operating_points=[{speed_hz: 35, torque_nm: 0.5}]", "duration_s=0.5"), [0])
+    (rattling,) = simulate(loaded("operating_points=[{speed_hz: 35, torque_nm: 0.3}]", "duration_s=0.5"), [0])
     assert rattling.labels["contact_loss_share"] > 0.0
     assert rattling.labels["integration_error_of"] == "levels"
     assert 0.0 < rattling.labels["integration_error"] < 0.5
