@@ -103,6 +103,11 @@ class SolverFailure(SiggenError):  # noqa: N818 - a status of a record, not a fa
         super().__init__(f"{status}: {reason}")
 
 
+def mm(length_m: float) -> str:
+    """Return a length [m] as messages say it, in the unit of files: '2.8 mm'."""
+    return f"{1e3 * length_m:.6g} mm"
+
+
 def path_fault(error: Exception) -> str:
     """Return in words that a path given by the user can be none of a file; empty for every other error."""
     if isinstance(error, OSError) and error.errno in {errno.ENAMETOOLONG, errno.ELOOP}:

@@ -43,29 +43,6 @@ ADDED = {
 """With these a configuration that has every part with columns of its own."""
 PLATES = "`housing.kind: plates`"
 SENSOR_PARTS = ("pink_noise", "mains")
-NAMES = {
-    r"theta_\w+_rad": "rotation of motor, gears and load about the mean rotation",
-    r"[xy]_\w+_m": "horizontal (x) and vertical (y) motion of gears and casing",
-    r"phi_casing_rad": "rocking of the casing",
-    r"phi_[xy]_\w+_rad": "tilt of a gear: how x or y of its flanks grows along the shaft",
-    r"clean_accel_.*": "acceleration at this place without path, sensor and noise",
-    r"bearing_force_.*": "force on the housing at both bearings of this shaft",
-    r"pair_k_force_n": "force of this pair along the line of action",
-    r"pair_k_load_share": "force of this pair over that of all",
-    r"pair_k_friction_n": "friction of this pair",
-    r"pair_k_sliding_m_s": "sliding speed at the contact",
-    r"pair_k_position_m": "place of the contact on the path of contact, from its start",
-    r"pair_k_friction_moment_pinion_nm": "moment of the pair's friction about the pinion's axis",
-    r"pair_k_friction_moment_gear_nm": "moment of the pair's friction about the gear's axis",
-    r"pair_k_friction_coefficient": "friction coefficient",
-    r"pair_k_damping_n_s_per_m": "damping of the pair",
-    r"pair_k_hertz_pressure_pa": "largest pressure in the contact",
-    r"pair_k_central_film_m": "central film thickness",
-    r"pair_k_film_ratio": "film thickness over the roughness of both flanks",
-    r"pair_k_asperity_share": "share of the load that asperities carry",
-}
-"""Meanings of quantities whose column says no more than their name."""
-
 HEAD = """# Columns of a set
 
 This page is printed by `make reference` from the columns that siggen writes; the files carry the same texts as metadata
@@ -155,11 +132,8 @@ def internals() -> Iterator[str]:
     for name in available_quantities(siggen.load_config(CONFIGS / "quickstart.yaml").possible):
         column = quantity_column(name, PAIR_NAMES)
         shown = re.sub(r"pair_\d+", "pair_k", name)
-        spelled = column.meaning.startswith(name.replace("_", " "))
-        note = column.meaning.removeprefix(name.replace("_", " ")) if spelled else ""
-        meaning = next((text for pattern, text in NAMES.items() if re.fullmatch(pattern, shown)), "") if spelled else ""
         unit = f" ({column.unit})" if column.unit else ""
-        same = names.setdefault(f"{meaning + note if spelled else column.meaning}{unit}", [])
+        same = names.setdefault(f"{column.meaning}{unit}", [])
         same += [f"`{shown}`"] if f"`{shown}`" not in same else []
     yield from (f"* {', '.join(same)}: {text}" for text, same in names.items())
 

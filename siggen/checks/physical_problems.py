@@ -22,7 +22,7 @@ from siggen.checks.tilt_problems import tilt_problems
 from siggen.checks.variation_problems import variation_problems
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
-from siggen.faults.flank_place import allowed_text, found_problems, in_mm
+from siggen.faults.flank_place import found_problems
 from siggen.gearbox.pair import mesh_options
 from siggen.gearbox.possible import PossibleGearbox, PossibleMesh
 from siggen.gears.errors.iso_1328 import outside_iso_1328
@@ -118,9 +118,9 @@ def _located(mesh: PossibleMesh, problem: GeometryProblem) -> Problem:
         return Problem(f"{mesh.at}ring_teeth", received, problem.allowed)
     section = "gears" if problem.where == "pair" or problem.name == "rack tip" else f"gears.{problem.where}"
     key = KEYS.get(problem.name)
-    received = in_mm(problem.received) if key else f"{problem.name}: {in_mm(problem.received)}"
+    received = problem.received if key else f"{problem.name}: {problem.received}"
     path = f"{mesh.at}{section}.{key}" if key else f"{mesh.at}{section}"
-    return Problem(path, received, allowed_text(problem.allowed))
+    return Problem(path, received, problem.allowed)
 
 
 def _state_problems(pairs: Sequence[GearPair], damage: Fault, path: str, *, through_face: bool) -> Iterator[Problem]:

@@ -29,8 +29,8 @@ def quantity_problems(gearbox: PossibleGearbox) -> list[Problem]:
         if name not in available:
             near = ", ".join(difflib.get_close_matches(name, available, NEAREST, cutoff=0.0))
             allowed = (
-                f"allowed: all, or one of the {len(available)} quantities of this model; nearest: {near} (`siggen "
-                "simulate CONFIG --record 0 --out FILE` without this key writes every one)"
+                f"allowed: all, or one of the {len(available)} quantities of this model; nearest: {near}; a record "
+                "simulated alone without this key shows every one"
             )
             problems.append(Problem(f"internals.quantities.{place}", f"'{name}'", allowed))
     return problems

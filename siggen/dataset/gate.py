@@ -92,7 +92,8 @@ def _typed(kind: type[Facts], name: str, stored: bytes) -> Facts:
 
 def _allowed(message: str) -> str:
     """Return what pydantic says in the words of siggen."""
-    return message.removeprefix("Value error, ").replace("Input should be ", "allowed: ")
+    own, should_be = message.removeprefix("Value error, "), "Input should be "
+    return f"allowed: {own.removeprefix(should_be)}" if own.startswith(should_be) else own
 
 
 def _refuse(name: str, problems: list[str]) -> None:

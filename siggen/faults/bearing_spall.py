@@ -16,7 +16,7 @@ from siggen.dynamics.bearings.bearing_spall import RollingSpall, in_bearings
 from siggen.errors import Problem
 from siggen.faults.ball_geometry import BallGeometry
 from siggen.faults.fault import Fault, HitTeeth
-from siggen.faults.flank_place import MM, allowed_text, in_mm
+from siggen.faults.flank_place import MM
 from siggen.faults.growth import Growth
 from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
@@ -88,7 +88,7 @@ class BearingSpalls(Fault):
         """Yield the first of what does not fit its element of a bearing."""
         for corner in corners(partial(draw, self, path="")):
             for problem in corner._spall(bearing, 0.0).own_problems():
-                yield Problem(KEYS[problem.name], in_mm(problem.received), allowed_text(problem.allowed))
+                yield Problem(KEYS[problem.name], problem.received, f"allowed: {problem.allowed}")
                 return
 
     def drawn(self, growth: Growth) -> Parts:

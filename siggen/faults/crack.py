@@ -12,7 +12,7 @@ from pydantic import Field
 
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
-from siggen.faults.flank_place import DAMAGED_GEAR, AnyGear, allowed_text, in_mm
+from siggen.faults.flank_place import DAMAGED_GEAR, AnyGear
 from siggen.faults.growth import Growth
 from siggen.gears.damage.crack import RootCrack
 from siggen.gears.damage.crack_law import ANGLE_RANGE_RAD, DEEPEST_SHARE
@@ -100,7 +100,7 @@ class RootCracks(Fault):
                 yield Problem("gear", str(error), "allowed: a gear whose root has one")
                 return
             for problem in crack.place_problems(pair):
-                yield Problem(CRACK_KEYS[problem.name], in_mm(problem.received), allowed_text(problem.allowed))
+                yield Problem(CRACK_KEYS[problem.name], problem.received, f"allowed: {problem.allowed}")
 
     @property
     def _sizes(self) -> dict[str, tuple[float, float]]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Sequence
 from typing import Annotated, Literal, TypeAlias
 
@@ -141,23 +140,10 @@ def axial_heights_m(gear: SpurGear, values_m: FloatArray, reading: str) -> Float
     return np.where(values_m < 0.0, below, gear.height_m(roll) + beyond)
 
 
-def in_mm(text: str) -> str:
-    """Return a text with its lengths in mm, the unit of the configuration."""
-    text = re.sub(r"\b([a-z_]+)_m (?=[-\d])", r"\1 ", text)
-    number = r"-?\d[\d.]*(?:e[-+]?\d+)?"
-    text = re.sub(rf"({number}) to (?={number} m\b)", lambda found: f"{float(found[1]) * 1e3:.6g} to ", text)
-    return re.sub(rf"({number}) m\b", lambda found: f"{float(found[1]) * 1e3:.6g} mm", text)
-
-
-def allowed_text(text: str) -> str:
-    """Return what is allowed, in mm and with the word before it."""
-    return "allowed: " + in_mm(text.removeprefix("allowed: "))
-
-
 def found_problems(pair: GearPair, damage: Damage, path: str, remark: str = "") -> list[Problem]:
     """Return what is wrong with a damage as problems of one key."""
     return [
-        Problem(path, f"{remark}{in_mm(problem.received)}", allowed_text(problem.allowed) + GO_ON.get(problem.name, ""))
+        Problem(path, f"{remark}{problem.received}", f"allowed: {problem.allowed}{GO_ON.get(problem.name, '')}")
         for problem in damage_problems(pair, damage)
     ]
 

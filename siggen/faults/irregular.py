@@ -35,11 +35,9 @@ from siggen.faults.flank_place import (
     Length,
     OptionalLength,
     PlaceOnFace,
-    allowed_text,
     axial_heights_m,
     axial_m,
     height_m_of,
-    in_mm,
     read_m,
     size_that_adds_nothing,
 )
@@ -291,7 +289,7 @@ def _height_problems(pair: GearPair, size: IrregularSpalls, reach_m: float) -> I
         spall = FlankSpall(Side(size.gear), 0, rectangle(heights, (0.0, pair.face_width_m)), _deepest_m(pair, size))
         for problem in single_problems(pair, (spall,)):
             if problem.name == "depth_m":
-                yield _depth_problem(size, in_mm(problem.received), allowed_text(problem.allowed))
+                yield _depth_problem(size, problem.received, f"allowed: {problem.allowed}")
                 return
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from siggen.errors import Problem
-from siggen.faults.flank_place import MM, PROBE_M, AnyGear, allowed_text, axial_heights_m, in_mm
+from siggen.faults.flank_place import MM, PROBE_M, AnyGear, axial_heights_m
 from siggen.gears.damage.flank_damage import damage_problems
 from siggen.gears.damage.irregular import IrregularSpall
 from siggen.gears.geometry.gear_pair import GearPair
@@ -68,4 +68,4 @@ class ListedIrregular(Section):
         for problem in damage_problems(pair, (spall,)):
             if problem.name != "contact":
                 key = "depth_mm" if problem.name == "depth_m" else "edges_mm"
-                yield Problem(prefix + key, in_mm(problem.received), allowed_text(problem.allowed))
+                yield Problem(prefix + key, problem.received, f"allowed: {problem.allowed}")

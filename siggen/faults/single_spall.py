@@ -24,10 +24,8 @@ from siggen.faults.flank_place import (
     Length,
     LengthAcross,
     PlaceOnFace,
-    allowed_text,
     axial_m,
     height_m_of,
-    in_mm,
     read_m,
 )
 from siggen.gears.damage.flank_damage import damage_problems
@@ -104,7 +102,7 @@ def spall_problems(pair: GearPair, size: SpallSize, reading: str, prefix: str = 
         for problem in damage_problems(pair, (spall,)):
             if problem.name != "contact":
                 key = SPALL_KEYS.get(problem.name, "profile_length_mm")
-                yield Problem(prefix + key, in_mm(problem.received), allowed_text(problem.allowed))
+                yield Problem(prefix + key, problem.received, f"allowed: {problem.allowed}")
 
 
 def largest_spall(pair: GearPair, size: SpallSize, reading: str, tooth: int) -> FlankSpall:

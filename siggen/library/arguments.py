@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from math import isfinite
@@ -92,16 +91,20 @@ def saying(arguments: Mapping[str, str]) -> Iterator[None]:
     try:
         yield
     except ConfigError as error:
-        problems = (f"{one.path}: received {one.received}; {one.allowed}" for one in error.problems)
+        problems = (f"{_argument(one.path)}: received {one.received}; {one.allowed}" for one in error.problems)
         lines = [_said(problem, arguments) for problem in problems]
         raise UsageError("\n".join(dict.fromkeys(lines))) from None
     except UsageError as error:
         raise UsageError(_said(str(error), arguments)) from None
 
 
+def _argument(path: str) -> str:
+    """Return a key of a section as the argument that gives it: both semi-axes are one."""
+    section, _, key = path.rpartition(".")
+    return f"{section}.semi_axes_mm" if key.startswith("semi_axis_") else path
+
+
 def _said(text: str, arguments: Mapping[str, str]) -> str:
-    text = re.sub(r" \(`siggen [^)]*\)", "", text)  # a hint for the command line
-    text = re.sub(r"semi_axis_(face|profile)_mm", "semi_axes_mm", text)
     for beginning in sorted(arguments, key=len, reverse=True):
         if text.startswith(beginning):
             return arguments[beginning] + text.removeprefix(beginning)

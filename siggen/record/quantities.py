@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.checks.quantity_names import acceleration_name, angle_name, bearing_force_name
 from siggen.dynamics.drive.drive import Rotation
-from siggen.dynamics.mesh.contact_names import is_of_contact_alone
+from siggen.dynamics.mesh.contact_names import PAIR_PREFIX, is_of_contact_alone
 from siggen.dynamics.time.response import Response
 from siggen.gearbox.specimen import Specimen
 from siggen.keys.column import Column
@@ -37,6 +39,33 @@ MEANINGS = {
     "{0.body}_angle_rad": "angle of {0.called} within its revolution, from 0 to 2 pi",
 }
 """Of a mesh, whose driver is 0 and whose driven gear is 1."""
+OF_A_PAIR = {
+    "force_n": "force of this pair along the line of action",
+    "load_share": "force of this pair over that of all",
+    "friction_n": "friction of this pair",
+    "sliding_m_s": "sliding speed at the contact",
+    "position_m": "place of the contact on the path of contact, from its start",
+    "friction_moment_": "moment of the pair's friction about the axis of this gear",
+    "friction_coefficient": "friction coefficient",
+    "damping_n_s_per_m": "damping of the pair",
+    "hertz_pressure_pa": "largest pressure in the contact",
+    "central_film_m": "central film thickness",
+    "film_ratio": "film thickness over the roughness of both flanks",
+    "asperity_share": "share of the load that asperities carry",
+}
+"""By what stands behind the number of the pair, or its beginning."""
+OF_MOTION = {
+    "clean_accel_": "acceleration at this place without path, sensor and noise",
+    "bearing_force_": "force on the housing at both bearings of this shaft",
+    "support_moment_": "moment that keeps the ring from turning",
+    "theta_": "rotation of this body about the mean rotation",
+    "phi_casing": "rocking of the casing",
+    "phi_": "tilt of this gear: how x or y of its flanks grows along the shaft",
+    "x_": "horizontal motion of this body",
+    "y_": "vertical motion of this body",
+}
+"""By the beginning of the name."""
+OF_ITS_PAIR = re.compile(rf"(?:.*_)?{PAIR_PREFIX}\d+_(.*)")
 TRANSMISSION_ERROR = "transmission_error_m"
 APPROACH = "approach_m"
 """A planetary set, whose meshes share one load, has no transmission error."""
@@ -69,10 +98,17 @@ def quantity_column(name: str, names: Names) -> Column:
     import pyarrow as pa
 
     unit = next((unit for ending, unit in UNITS.items() if name.endswith(ending)), "")
-    meaning = _meanings(names).get(name) or name.replace("_", " ")
+    meaning = _meanings(names).get(name) or _of_kind(name)
     if is_of_contact_alone(name):
         meaning += "; NaN while the pair does not touch on its drive flank"
     return Column(name, pa.float32(), unit, meaning)
+
+
+def _of_kind(name: str) -> str:
+    """Return the meaning of a quantity of a pair or of a place; its name where nothing more is known of it."""
+    of_pair = OF_ITS_PAIR.fullmatch(name)
+    quantity, known = (of_pair[1], OF_A_PAIR) if of_pair else (name, OF_MOTION)
+    return next((meaning for beginning, meaning in known.items() if quantity.startswith(beginning)), name)
 
 
 def _meanings(names: Names) -> dict[str, str]:

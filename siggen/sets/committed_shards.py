@@ -16,7 +16,7 @@ def usable_shards(
     storage: Storage,
     wanted: Sequence[ShardPlan],
     trusted: Collection[str],
-    notes: list[str],
+    notes: list[tuple[str, str]],
     check: Callable[[], None],
 ) -> Iterator[Sidecar]:
     """Yield the sidecars of whole shards of `trusted` fingerprints; `notes` says of the others why they are not taken.
@@ -33,7 +33,7 @@ def usable_shards(
         if not isinstance(found, str):
             yield found.without_bulk(specimens, records)
         elif found:
-            notes.append(f"{shard.key} is made again: {found}")
+            notes.append((shard.key, found))
 
 
 def promised(identity: str, states: Collection[str], storage: Storage, shard: ShardPlan) -> Sidecar | str:

@@ -103,7 +103,7 @@ def _check_shards(run: SetRun, there: int) -> None:
     run.take_over(old)
     if lost := [shard.key for shard in old if shard.key not in run.sidecars]:
         where = run.storage.location
-        why = "; ".join(note.replace(" is made again", "") for note in run.notes[:3])
+        why = "; ".join(f"{key}: {reason}" for key, reason in run.notes[:3])
         raise DatasetError(
             f"{where}: {len(lost)} of its {len(old)} shards are missing, damaged or of another version of siggen "
             f"({', '.join(lost[:3])}{', ...' if len(lost) > 3 else ''}). {why or 'no file is there'}. This is "

@@ -158,7 +158,7 @@ class SetRun:
     shards_made: int = 0
     total: int = 0
     trusted: frozenset[str] = frozenset()
-    notes: list[str] = field(default_factory=list)
+    notes: list[tuple[str, str]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         maker = Maker(self.design.identity, fingerprint(self.environment), self.environment)
@@ -208,7 +208,7 @@ class SetRun:
             records_made=self.made,
             shards_taken_over=taken_over,
             seconds=self.journal.seconds,
-            notes=tuple(self.notes),
+            notes=tuple(f"{key} is made again: {reason}" for key, reason in self.notes),
         )
 
     def make(self, wanted: Sequence[ShardPlan]) -> int:
@@ -235,7 +235,7 @@ class SetRun:
             records_made=self.made,
             shards_taken_over=taken_over,
             seconds=self.journal.seconds,
-            notes=tuple(self.notes),
+            notes=tuple(f"{key} is made again: {reason}" for key, reason in self.notes),
         )
 
     def take_over(self, wanted: Sequence[ShardPlan]) -> None:

@@ -88,7 +88,7 @@ def _draw_harmonic(
     for name, color, style in shafts:
         for order in range(1, SIDEBANDS + 1):
             for sign in (-1, 1):
-                label = f"±k · {name.removesuffix('_hz').replace('_', ' ')}" if order == sign == 1 else None
+                label = f"±k · {name}" if order == sign == 1 else None
                 ax.axvline(
                     centre_hz + sign * order * record[name], color=color, ls=style, lw=0.7, alpha=0.7, label=label
                 )

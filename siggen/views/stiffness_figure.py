@@ -99,9 +99,7 @@ def _stack(axis: Axes, curve: StiffnessCurve) -> None:
     shades = [0.75, 0.55, 0.4, 0.25]
     colours = [*(colormaps[colour](shade) for colour in SHADES for shade in shades), "C6"]
     layers = [1e9 * curve.parts_m_per_n[name][inside] for name in names]
-    axis.stackplot(
-        np.degrees(curve.angle_rad[inside]), layers, labels=[n.replace("_", " ") for n in names], colors=colours
-    )
+    axis.stackplot(np.degrees(curve.angle_rad[inside]), layers, labels=names, colors=colours)
     axis.set_ylabel(f"compliance of the damaged\ntooth's pair, {curve.state} [10⁻⁹ m/N]")
     handles, labels = axis.get_legend_handles_labels()
     axis.legend(handles[::-1], labels[::-1], loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8)

@@ -213,8 +213,8 @@ def test_the_model_starts_where_its_record_does() -> None:
     """From its start on, by its own steps, a motion comes to the record's values; one that starts later does not."""
     whole = load_config(planetary(), ["duration_s=0.005"])
     model, loaded = exported_model(*drawn_record(whole, 0)), state_config(whole.config, 0, 0)
-    specimen, steps = SetDesign(loaded).gearbox(0), int(model["steps_per_sample"])
-    point = loaded.drawn_points(0)[0]
+    design, steps = SetDesign(loaded), int(model["steps_per_sample"])
+    specimen, point = design.gearbox(0), design.drawn_points(0)[0]
     motion = specimen_motion(
         specimen.law, specimen_state(specimen, 0).mesh, point, float(model["step_s"])
     )  # fmt: skip

@@ -19,6 +19,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.dynamics.bearings.ball_bearing import BallBearing
+from siggen.errors import mm
 from siggen.gears.damage.part import NO_GEAR, NO_TOOTH, Part, Refusal
 from siggen.gears.damage.sham import SHAM
 from siggen.names import Side
@@ -79,10 +80,10 @@ class RollingSpall:
         bearing = self.bearing
         if not self.length_m < self.largest_length_m:
             said = "half of the ball's girth" if self.element == "ball" else "the spacing of the balls"
-            yield Refusal("length_m", f"{self.length_m!r} m", f"below {self.largest_length_m!r} m, {said}")
+            yield Refusal("length_m", mm(self.length_m), f"below {mm(self.largest_length_m)}, {said}")
         elif not self.depth_m < 0.5 * bearing.ball_diameter_m:
-            allowed = f"below {0.5 * bearing.ball_diameter_m!r} m, the radius of a ball"
-            yield Refusal("depth_m", f"{self.depth_m!r} m", allowed)
+            allowed = f"below {mm(0.5 * bearing.ball_diameter_m)}, the radius of a ball"
+            yield Refusal("depth_m", mm(self.depth_m), allowed)
 
     def table_row(self) -> dict[str, object]:
         """Return its row of the table of damage."""

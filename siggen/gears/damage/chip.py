@@ -20,6 +20,7 @@ from math import sqrt
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.errors import mm
 from siggen.gears.damage.part import Part, Refusal
 from siggen.gears.damage.part_chip import PartChip, lost_outline
 from siggen.gears.damage.sham import SHAM
@@ -106,7 +107,7 @@ class WholeChip:
     def own_problems(self) -> Iterator[Refusal]:
         """Yield a height that is none."""
         if not self.height_m > 0.0:
-            yield Refusal("height_m", f"height_m {self.height_m!r} m", "above 0")
+            yield Refusal("height_m", f"height {mm(self.height_m)}", "above 0")
 
     def table_row(self) -> dict[str, object]:
         """Return gear, tooth, kind and the height that is lost; 0 where all of the tooth is."""

@@ -18,6 +18,7 @@ from typing import TypeAlias
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.errors import mm
 from siggen.gears.damage.crack_law import ANGLE_RANGE_RAD, DEEPEST_SHARE, unit_compliance
 from siggen.gears.damage.part import Part, Refusal
 from siggen.gears.damage.sham import Sham
@@ -120,13 +121,13 @@ class RootCrack:
     def own_problems(self) -> Iterator[Refusal]:
         """Yield an impossible depth, angle or run."""
         if not 0.0 < self.depth_m < inf:
-            yield Refusal("depth_m", f"depth_m {self.depth_m:.6g} m", "above 0")
+            yield Refusal("depth_m", f"depth {mm(self.depth_m)}", "above 0")
         low, high = ANGLE_RANGE_RAD
         if not low - SLACK <= self.angle_rad <= high + SLACK:
             allowed = f"{degrees(low):g} to {degrees(high):g} degrees to the tooth's centre line"
             yield Refusal("angle_rad", f"{degrees(self.angle_rad):.6g} degrees", allowed)
         if not self.run_m > 0.0:
-            yield Refusal("run_m", f"run_m {self.run_m:.6g} m", "above 0")
+            yield Refusal("run_m", f"run {mm(self.run_m)}", "above 0")
 
     def place_problems(self, pair: GearPair) -> Iterator[Refusal]:
         """Yield a tooth that there is not, a root without the chord, a crack too deep for it or into the bore."""
@@ -140,11 +141,11 @@ class RootCrack:
             return
         deepest = DEEPEST_SHARE * chord.length_m
         if self.depth_m > deepest * (1.0 + SLACK):
-            allowed = f"at most {deepest:.6g} m, {DEEPEST_SHARE:g} of the chord of the root {chord.length_m:.6g} m"
-            yield Refusal("depth_m", f"depth_m {self.depth_m:.6g} m", allowed)
+            allowed = f"at most {mm(deepest)}, {DEEPEST_SHARE:g} of the chord of the root {mm(chord.length_m)}"
+            yield Refusal("depth_m", f"depth {mm(self.depth_m)}", allowed)
         elif chord.height_m - self.depth_m * cos(self.angle_rad) < gear.bore_radius_m:
-            allowed = f"a crack that ends above the bore of {gear.bore_radius_m:.6g} m"
-            yield Refusal("depth_m", f"depth_m {self.depth_m:.6g} m", allowed)
+            allowed = f"a crack that ends above the bore of {mm(gear.bore_radius_m)}"
+            yield Refusal("depth_m", f"depth {mm(self.depth_m)}", allowed)
 
     def table_row(self) -> dict[str, object]:
         """Return depth, angle and run."""

@@ -9,6 +9,7 @@ from math import gcd
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.errors import mm
 from siggen.gears.damage.covering import hidden_rows
 from siggen.gears.damage.part import Refusal
 from siggen.gears.damage.row_columns import COLUMNS, FACE
@@ -72,7 +73,7 @@ def _contact_problems(pair: GearPair, damage: Damage) -> Iterator[DamageProblem]
         index, pit = next((i, pit) for i, pit in enumerate(damage) if pit.gear == side and pit.tooth == tooth)
         together = "" if mate is None else f" together with gear tooth {mate}"
         received = f"{_kinds(damage, side, tooth)} of {side} tooth {tooth}{together} that take the whole contact length"
-        allowed = f"a loss below the face width {pair.face_width_m:.6g} m everywhere"
+        allowed = f"a loss below the face width {mm(pair.face_width_m)} everywhere"
         yield DamageProblem(index, received, allowed, pit.kind, "contact")
 
 

@@ -18,6 +18,7 @@ from itertools import pairwise
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.errors import mm
 from siggen.gears.damage.heights import clipped_arcs_m
 from siggen.gears.damage.on_flank import OnFlank, floor_problems
 from siggen.gears.damage.outlines import Polygon
@@ -132,16 +133,18 @@ class IrregularSpall(OnFlank):
         """
         face, low, high = np.array(self.stations_m).T
         if not (np.isfinite(face).all() and np.all(np.diff(face) > 0.0) and face.size > 1):
-            yield Refusal("stations_m", f"stations at {face.tolist()} m", "at least two, ascending across the face")
+            yield Refusal(
+                "stations_m", f"stations at {(1e3 * face).tolist()} mm", "at least two, ascending across the face"
+            )
         elif not np.all(low <= high):
             i = int(np.argmin(low <= high))
-            received = f"a lower edge at {low[i]:.6g} m and an upper one at {high[i]:.6g} m, {face[i]:.6g} m across the"
+            received = f"a lower edge at {mm(low[i])} and an upper one at {mm(high[i])}, {mm(face[i])} across the"
             yield Refusal("stations_m", f"{received} face", "edges that do not cross")
         if len(self.strip_depths_m) != face.size - 1:
             received = f"{len(self.strip_depths_m)} depths of strips between {face.size} stations"
             yield Refusal("strip_depths_m", received, "one between neighbouring stations")
         if not (np.isfinite(self.edge_radius_m) and self.edge_radius_m >= 0.0):
-            yield Refusal("edge_radius_m", f"edge_radius_m {self.edge_radius_m!r} m", "finite and at least 0")
+            yield Refusal("edge_radius_m", f"edge radius {mm(self.edge_radius_m)}", "finite and at least 0")
         yield from floor_problems(self)
 
     def table_row(self) -> dict[str, object]:

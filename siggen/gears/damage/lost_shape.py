@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.errors import mm
 from siggen.gears.damage.heights import flank_heights
 from siggen.gears.damage.part import Part, Refusal
 from siggen.gears.damage.sham import Sham
@@ -109,7 +110,7 @@ class LostShape:
             return
         depths = self.depths_m(pair, 16)
         if not (np.isfinite(depths).all() and depths.min() >= 0.0):
-            received = f"depths from {depths.min():.6g} to {depths.max():.6g} m"
+            received = f"depths from {1e3 * depths.min():.6g} to {mm(depths.max())}"
             yield Refusal("missing_m", received, "finite depths of at least 0 m, one for each point")
 
     def table_row(self) -> dict[str, object]:

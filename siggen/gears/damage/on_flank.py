@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.errors import mm
 from siggen.gears.damage.covering import holds
 from siggen.gears.damage.heights import flank_heights, profile_arc_m
 from siggen.gears.damage.outlines import Outline
@@ -100,19 +101,19 @@ class OnFlank:
         if not 0 <= self.tooth < gear.teeth:
             yield Refusal("tooth", f"tooth {self.tooth!r}", f"0 to {gear.teeth - 1}")
         if not 0.0 <= outline.face_m <= pair.face_width_m:
-            allowed = f"centre on the face, 0 to {pair.face_width_m:.6g} m"
-            yield Refusal("face_m", f"face_m {outline.face_m:.6g} m", allowed)
+            allowed = f"centre on the face, 0 to {mm(pair.face_width_m)}"
+            yield Refusal("face_m", f"face {mm(outline.face_m)}", allowed)
         foot, tip = flank_heights(gear)
         if not foot <= outline.height_m <= tip:
-            allowed = f"centre on the involute flank, {foot:.6g} to {tip:.6g} m above the base circle"
-            yield Refusal("height_m", f"height_m {outline.height_m:.6g} m", allowed)
+            allowed = f"centre on the involute flank, {1e3 * foot:.6g} to {mm(tip)} above the base circle"
+            yield Refusal("height_m", f"height {mm(outline.height_m)}", allowed)
             return
         ends = np.clip(outline.height_range_m, foot, tip)
         # The thickness has a single maximum along the flank, so its least value over the outline is at an end.
         thickness = float(np.min(gear.half_thickness_m(gear.roll_at_height(ends))))
         if self.depth_m >= thickness:
-            allowed = f"below the half tooth thickness there, {thickness:.6g} m"
-            yield Refusal("depth_m", f"depth_m {self.depth_m:.6g} m", allowed)
+            allowed = f"below the half tooth thickness there, {mm(thickness)}"
+            yield Refusal("depth_m", f"depth {mm(self.depth_m)}", allowed)
 
     def table_row(self: Outlined) -> dict[str, object]:
         """Return place, size, outline and floor in mm."""
@@ -139,4 +140,4 @@ def floor_problems(damage: Outlined) -> Iterator[Refusal]:
     if damage.floor not in damage.floors:
         yield Refusal("floor", f"floor {damage.floor!r}", ", ".join(damage.floors))
     if not (isfinite(damage.depth_m) and damage.depth_m > 0.0):
-        yield Refusal("depth_m", f"depth_m {damage.depth_m!r} m", "finite and above 0")
+        yield Refusal("depth_m", f"depth {mm(damage.depth_m)}", "finite and above 0")

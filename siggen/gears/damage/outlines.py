@@ -16,7 +16,7 @@ from typing import TypeAlias
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.errors import counted
+from siggen.errors import counted, mm
 from siggen.gears.damage.row_columns import UNSTATED
 
 
@@ -69,7 +69,7 @@ class Ellipse:
         for name in ("semi_axis_face_m", "semi_axis_profile_m"):
             value = getattr(self, name)
             if not (isfinite(value) and value > 0.0):
-                yield name, f"{name} {value!r} m", "finite and above 0"
+                yield name, f"{name.removesuffix('_m')} {mm(value)}", "finite and above 0"
 
     def rows(self, depth_m: float, dish: bool) -> list[tuple[float, ...]]:
         """Return the one row of an ellipse; columns: `siggen.gears.damage.row_columns`."""

@@ -19,6 +19,7 @@ from math import isfinite
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.errors import mm
 from siggen.gears.damage.covering import holds
 from siggen.gears.damage.flank_damage import pit_rows
 from siggen.gears.damage.heights import flank_heights
@@ -118,7 +119,7 @@ class PartChip:
         for name in ("height_m", "width_m"):
             value = getattr(self, name)
             if not (isfinite(value) and value > 0.0):
-                yield Refusal(name, f"{name} {value!r} m", "finite and above 0")
+                yield Refusal(name, f"{name.removesuffix('_m')} {mm(value)}", "finite and above 0")
 
     def place_problems(self, pair: GearPair) -> Iterator[Refusal]:
         """Yield a tooth that there is not, a height beyond the tooth, a width beyond the face."""
@@ -127,10 +128,10 @@ class PartChip:
             yield Refusal("tooth", f"tooth {self.tooth!r}", f"0 to {gear.teeth - 1}")
         most = gear.tip_radius_m - gear.root_radius_m
         if self.height_m > most:
-            yield Refusal("height_m", f"height_m {self.height_m:.6g} m", f"up to {most:.6g} m, the height of the tooth")
+            yield Refusal("height_m", f"height {mm(self.height_m)}", f"up to {mm(most)}, the height of the tooth")
         if self.width_m > pair.face_width_m:
-            allowed = f"up to {pair.face_width_m:.6g} m, the face width"
-            yield Refusal("width_m", f"width_m {self.width_m:.6g} m", allowed)
+            allowed = f"up to {mm(pair.face_width_m)}, the face width"
+            yield Refusal("width_m", f"width {mm(self.width_m)}", allowed)
 
     def table_row(self) -> dict[str, object]:
         """Return outline, height and width of what is gone in mm."""

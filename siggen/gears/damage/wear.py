@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.errors import mm
 from siggen.gears.damage.part import NO_TOOTH, Part, Refusal
 from siggen.gears.damage.sham import SHAM
 from siggen.gears.damage.tooth_damage import Damage
@@ -100,7 +101,7 @@ class WornFlanks:
         """Yield a depth that is none."""
         depths = np.asarray(self.depths_m)
         if not (np.isfinite(depths).all() and depths.min() >= 0.0 < depths.max()):
-            received = f"depths from {depths.min()!r} m to {depths.max()!r} m"
+            received = f"depths from {mm(depths.min())} to {mm(depths.max())}"
             yield Refusal("depths_m", received, "finite depths from 0, not 0 everywhere")
 
     def table_row(self) -> dict[str, object]:
@@ -158,7 +159,7 @@ def worn_until(
     Source: see this module.
     """
     if not (min(depth_m, turns) < np.inf and coefficient_m2_per_n > 0.0):
-        received = f"coefficient {coefficient_m2_per_n} m²/N, depth {depth_m} m, {turns} turns"
+        received = f"coefficient {coefficient_m2_per_n} m²/N, depth {mm(depth_m)}, {turns} turns"
         raise ValueError(f"wear: received {received}; allowed: a coefficient above 0, and a finite depth or turns")
     position = np.linspace(pair.contact_start_m, pair.contact_end_m, POINTS)
     factors = turn_factors(pair, position, coefficient_m2_per_n)

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from siggen.errors import UsageError
+from siggen.errors import UsageError, mm
 from siggen.gears.geometry.involute import inverse_involute, involute_function
 from siggen.gears.geometry.spur_gear import SpurGear, transverse_gear
 from siggen.names import Side
@@ -340,28 +340,26 @@ def _positive(where: str, name: str, value: float) -> Iterator[GeometryProblem]:
 def _teeth(pair: GearPair) -> Iterator[GeometryProblem]:
     for side, gear in ((Side.DRIVER, pair.pinion), (Side.DRIVEN, pair.gear)):
         if gear.bore_radius_m >= gear.root_radius_m:
-            allowed = f"allowed: below the root radius {gear.root_radius_m:.6g} m"
-            yield GeometryProblem("bore_radius_m", side, f"{gear.bore_radius_m:.6g} m", allowed)
+            allowed = f"allowed: below the root radius {mm(gear.root_radius_m)}"
+            yield GeometryProblem("bore_radius_m", side, mm(gear.bore_radius_m), allowed)
         if gear.base_half_angle_rad <= 0.0 or gear.tip_radius_m <= max(gear.base_radius_m, gear.root_radius_m):
             allowed = (
-                f"allowed: a tip above the base radius {gear.base_radius_m:.6g} m and a tooth of some thickness there"
+                f"allowed: a tip above the base radius {mm(gear.base_radius_m)} and a tooth of some thickness there"
             )
             yield GeometryProblem("no involute flank", side, f"profile_shift {gear.profile_shift!r}", allowed)
         elif gear.tip_half_thickness_m <= 0.0:
-            received = f"half tip thickness {gear.tip_half_thickness_m:.6g} m with profile_shift {gear.profile_shift!r}"
+            received = f"half tip thickness {mm(gear.tip_half_thickness_m)} with profile_shift {gear.profile_shift!r}"
             yield GeometryProblem(
                 "pointed tip", side, received, "allowed: above 0; lower the profile shift or the addendum"
             )
         elif gear.base_radius_m * gear.base_half_angle_rad >= gear.root_radius_m > 0.0:
-            received = f"root radius {gear.root_radius_m:.6g} m"
-            allowed = f"allowed: above the half tooth thickness {gear.base_radius_m * gear.base_half_angle_rad:.6g} m"
+            received = f"root radius {mm(gear.root_radius_m)}"
+            allowed = f"allowed: above the half tooth thickness {mm(gear.base_radius_m * gear.base_half_angle_rad)}"
             yield GeometryProblem("root radius", side, received, allowed)
         room = 0.5 * pi * gear.module_m
         if gear.rack_round_offset_m > room:
-            received = (
-                f"clearance_coefficient {gear.clearance_coefficient!r}, round at {gear.rack_round_offset_m:.6g} m"
-            )
-            allowed = f"allowed: a rack tip round centred within half a pitch, {room:.6g} m; lower it or the addendum"
+            received = f"clearance_coefficient {gear.clearance_coefficient!r}, round at {mm(gear.rack_round_offset_m)}"
+            allowed = f"allowed: a rack tip round centred within half a pitch, {mm(room)}; lower it or the addendum"
             yield GeometryProblem("rack tip", side, received, allowed)
 
 
@@ -379,15 +377,13 @@ def _centres(pair: GearPair) -> Iterator[GeometryProblem]:
     given = pair.centre_distance_m
     # Rounding of a centre distance that a user typed from the formula must not count as jamming.
     if given is not None and given < tight * (1.0 - 1e-9):
-        yield GeometryProblem(
-            "centre_distance_m", "pair", f"{given:.9g} m", f"allowed: at least {tight:.9g} m (no backlash)"
-        )
+        yield GeometryProblem("centre_distance_m", "pair", mm(given), f"allowed: at least {mm(tight)} (no backlash)")
         return
     distance = pair.working_centre_distance_m
     for side, own, mate in ((Side.DRIVER, pair.pinion, pair.gear), (Side.DRIVEN, pair.gear, pair.pinion)):
         clearance = distance - own.tip_radius_m - mate.root_radius_m
         if clearance <= 0.0:
-            received = f"tip clearance {clearance:.6g} m"
+            received = f"tip clearance {mm(clearance)}"
             yield GeometryProblem(
                 "tip touches root", side, received, "allowed: above 0; lower the profile shift or the addendum"
             )
@@ -399,7 +395,7 @@ def _contact(pair: GearPair) -> Iterator[GeometryProblem]:
     for side, gear, active in zip(Side, (pair.pinion, pair.gear), pair.active_flank, strict=True):
         first = active[0]
         if first <= 0.0:
-            received = f"contact {-first * gear.base_radius_m:.6g} m below the base circle"
+            received = f"contact {mm(-first * gear.base_radius_m)} below the base circle"
             allowed = "allowed: contact above the base circle only; more teeth or shift"
             yield GeometryProblem("interference", side, received, allowed)
         if first > 0.0 or gear.undercut:
@@ -410,10 +406,12 @@ def _flank_start(side: Side, gear: SpurGear, first: float) -> Iterator[GeometryP
     try:
         start = gear.involute_start_roll_rad
     except ValueError as error:
-        yield GeometryProblem("undercut", side, f"{gear.teeth} teeth, profile_shift {gear.profile_shift!r}", str(error))
+        yield GeometryProblem(
+            "undercut", side, f"{gear.teeth} teeth, profile_shift {gear.profile_shift!r}", f"allowed: {error}"
+        )
         return
     if first < start:
         name = "undercut" if gear.undercut else "interference"
-        received = f"contact from {first * gear.base_radius_m:.6g} m along the line of action"
-        allowed = f"allowed: from the start of the involute, {start * gear.base_radius_m:.6g} m, onwards"
+        received = f"contact from {mm(first * gear.base_radius_m)} along the line of action"
+        allowed = f"allowed: from the start of the involute, {mm(start * gear.base_radius_m)}, onwards"
         yield GeometryProblem(name, side, received, allowed)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from siggen.arrays import FloatArray
+from siggen.errors import mm
 from siggen.gears.geometry.gear_pair import GearPair, GeometryProblem
 from siggen.gears.geometry.involute import inverse_involute, involute_function
 from siggen.gears.geometry.spur_gear import SpurGear
@@ -178,8 +179,8 @@ def _internal(pair: InternalPair) -> Iterator[GeometryProblem]:
         yield GeometryProblem("tips touch", "ring", received, allowed)
     first = planet.involute_start_roll_rad * planet.base_radius_m
     if pair.contact_start_m < first * (1.0 - 1e-9):
-        received = f"contact from {pair.contact_start_m:.6g} m along the line of action"
-        allowed = f"allowed: from {first:.6g} m, where the planet's flank starts; shorter tips of the ring"
+        received = f"contact from {mm(pair.contact_start_m)} along the line of action"
+        allowed = f"allowed: from {mm(first)}, where the planet's flank starts; shorter tips of the ring"
         yield GeometryProblem("interference", "ring and planet", received, allowed)
     if ring.tip_half_thickness_m <= 0.0:
         allowed = "allowed: a tooth of some thickness there"

@@ -225,7 +225,7 @@ def test_edges_that_cross_and_a_negative_radius_are_named() -> None:
     crossed = IrregularSpall("pinion", 0, ((0.0, 1e-3, 2e-3), (1e-2, 2e-3, 1e-3)), (1e-4,), -1e-4)
     problem, radius = crossed.own_problems()
     assert radius.name == "edge_radius_m"
-    assert "a lower edge at 0.002 m and an upper one at 0.001 m, 0.01 m across the face" in problem.received
+    assert "a lower edge at 2 mm and an upper one at 1 mm, 10 mm across the face" in problem.received
     backwards = IrregularSpall("pinion", 0, ((1e-2, 1e-3, 2e-3), (0.0, 1e-3, 2e-3)), (1e-4, 1e-4), 1e-4)
     assert [problem.allowed for problem in backwards.own_problems()] == [
         "at least two, ascending across the face",
