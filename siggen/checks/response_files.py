@@ -86,7 +86,7 @@ def _family(path: Mapping[str, Any], folder: Path, sensor: str) -> dict[str, lis
 def response_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
     """Yield what makes the measured responses of valid sections unusable for their records."""
     config = gearbox.config
-    if not gearbox.refused.isdisjoint({"fs_hz", "dynamics", "housing", "stages"}):  # which say what is needed
+    if not gearbox.refused.isdisjoint({"fs_hz", "dynamics", "housing"}):  # which say what is needed
         return
     for sensor in config.sensors:
         if isinstance(sensor.through, MeasuredPath):

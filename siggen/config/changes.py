@@ -131,9 +131,9 @@ def changed_sections(sections: Mapping[str, Any], changes: Sequence[Change]) -> 
             raise _refused(one, f"allowed with a machine: keys below {SHAFTS}")
         found[name] = _replaced({**sections, **found}.get(name), below, one)
     if "machine" in found:
-        _, stages, rotors = drivetrain(found["machine"])
-        dynamics = found.get("dynamics", sections.get("dynamics"))
-        found |= {"stages": stages, **({} if dynamics is None else {"dynamics": dynamics.model_copy(update=rotors)})}
+        *_, rotors = drivetrain(found["machine"])
+        if (dynamics := found.get("dynamics", sections.get("dynamics"))) is not None:
+            found["dynamics"] = dynamics.model_copy(update=rotors)
     return found
 
 

@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, field_serializer, model_validator
-from pydantic.json_schema import SkipJsonSchema
 
 from siggen.config.background import Background
 from siggen.config.changes import Change
@@ -22,7 +21,7 @@ from siggen.config.life import Life
 from siggen.config.machine import MachineSection
 from siggen.config.manufacture import Manufacture
 from siggen.config.planetary import Planetary
-from siggen.config.short_form import names_in, without_inner
+from siggen.config.short_form import names_in, stages_of, without_inner
 from siggen.config.stages import Stage
 from siggen.config.states import StateSection, changes_of, grown_from
 from siggen.config.stiffness import Stiffness
@@ -112,8 +111,6 @@ class Config(Section):
     )
     splits: Splits = Field(default=Splits(), description="split of every 20 specimens")
     gears: GearsSection = Field(description="the gear pair; needed without `machine`")
-    stages: SkipJsonSchema[tuple[Stage, ...]] = Field(default=(), exclude=True)
-    """Meshes of the machine behind the first one, in the order of power; no key of a file."""
     machine: MachineSection | None = Field(
         default=None, description="shafts, gears and meshes with names of your own, in place of `gears`"
     )
@@ -189,6 +186,11 @@ class Config(Section):
     def records_per_specimen(self) -> int:
         """Records of one specimen: all states at all operating points, repeats included; with `life` the most."""
         return self.state_count * len(self.operating_points) * self.repeats
+
+    @property
+    def stages(self) -> tuple[Stage, ...]:
+        """Meshes of the machine behind the first one, in the order of power."""
+        return stages_of(self.machine)
 
     @property
     def names(self) -> Names:

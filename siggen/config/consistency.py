@@ -13,7 +13,7 @@ from siggen.config.helical_limits import helical_problems
 from siggen.config.housing import ModalHousing, PlateHousing
 from siggen.config.life_problems import life_problems
 from siggen.config.planetary_problems import sets_problems
-from siggen.config.short_form import names_in
+from siggen.config.short_form import names_in, stages_of
 from siggen.config.stage_problems import most_teeth_per_turn, pair_of, stage_problems
 from siggen.config.stages import shaft_orders
 from siggen.config.states import SEVERITIES, StateSection
@@ -104,7 +104,7 @@ def places_of(sections: Mapping[str, Any]) -> Places | None:
     """Return what there is for sensors; None where sections that say so are wrong themselves."""
     if "dynamics" not in sections:
         return None
-    model, stages = sections["dynamics"].model, sections["stages"]
+    model, stages = sections["dynamics"].model, stages_of(sections["machine"])
     housing, planetary = sections.get("housing"), sections.get("planetary") is not None
     names = names_in(sections["machine"], planetary=planetary)
     if model == "casing" and isinstance(housing, ModalHousing):
@@ -135,7 +135,7 @@ def _sensor_turns(sections: Mapping[str, Any], _: Mapping[str, object]) -> Itera
     gears = sections["gears"]
     slowest = Fraction(min(gears.teeth_of("pinion")), max(gears.teeth_of("gear")))
     names = names_in(sections["machine"], planetary=sections.get("planetary") is not None)
-    orders = names.of_turning(shaft_orders(slowest, sections["stages"]))
+    orders = names.of_turning(shaft_orders(slowest, stages_of(sections["machine"])))
     turns = {name: pinion * order for name, order in orders.items()}
     for index, sensor in sections.get("sensors", {}).items():
         for problem in sensor.duration_problems(turns):

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from siggen.config.life import Life
+from siggen.config.short_form import stages_of
 from siggen.errors import Problem
 from siggen.keys.number import bounds, number_text
 
@@ -17,8 +18,11 @@ def life_problems(sections: Mapping[str, Any], raw: Mapping[str, object]) -> Ite
         return
     if raw.get("states"):
         yield Problem("states", "states beside a section life", "allowed: one of both; with life states: null")
-    for key, what in (("stages", "further meshes"), ("planetary", "planets")):
-        if sections.get(key):
+    for beside, what in (
+        (stages_of(sections["machine"]), "further meshes"),
+        (sections.get("planetary"), "planets"),
+    ):
+        if beside:
             yield Problem("life", f"a section life with {what}", f"allowed: null, or no {what}: teeth of one pair wear")
     yield from _loads(sections, life)
 

@@ -61,14 +61,14 @@ class ParsedConfig:
 def parse(raw: Mapping[str, object]) -> ParsedConfig:
     """Return the configuration that a mapping stands for, or all its problems; never raises because of its content."""
     if raw.get("machine") is None:
-        return _parsed(raw, {"machine": None, "stages": ()})
+        return _parsed(raw, {"machine": None})
     machine, wrong = _validated(_adapter("machine"), raw["machine"], ("machine",))
     if wrong := [_at_part(one, raw["machine"]) for one in wrong] or machine_problems(machine):
         return ParsedConfig(None, MappingProxyType({}), tuple(wrong))  # words of all else are those of its names
     names = names_of(machine)
-    gears, stages, rotors = drivetrain(machine)
+    gears, _, rotors = drivetrain(machine)
     short = {key: value for key, value in raw.items() if key not in (*REPLACED, "machine")}
-    parsed = _parsed(short, {"machine": machine, "gears": gears, "stages": stages}, rotors)
+    parsed = _parsed(short, {"machine": machine, "gears": gears}, rotors)
     wrong, told = [*problems_beside(raw)], {problem.path for problem in problems_beside(raw)}
     problems = [*wrong, *(one for one in map(names.problem, parsed.problems) if one.path not in told)]
     return ParsedConfig(None if wrong else parsed.config, parsed.sections, tuple(problems), names)

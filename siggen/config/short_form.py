@@ -7,7 +7,7 @@ The first mesh is `gears`, with a pinion and a gear; further meshes are `stages`
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from functools import cache
+from functools import lru_cache
 from typing import Any
 
 from siggen.config.dynamics import RotorSection
@@ -32,7 +32,7 @@ from siggen.names import (
 )
 
 
-@cache
+@lru_cache(maxsize=128)  # a state that changes shafts has a machine of its own in every gearbox
 def names_of(machine: MachineSection) -> Names:
     """Return the names of a machine without problems."""
     found, shared = train(machine), idlers(machine)
@@ -116,6 +116,12 @@ def drivetrain(machine: MachineSection) -> tuple[GearsSection, tuple[Stage, ...]
         )
     rotors = (RotorSection(**_values(shafts[place], RotorSection)) for place in found.shafts)
     return GearsSection(**_values(pairs[0], Pair)), tuple(stages), dict(zip(SECTIONS, rotors, strict=False))
+
+
+@lru_cache(maxsize=128)
+def stages_of(machine: MachineSection | None) -> tuple[Stage, ...]:
+    """Return the further meshes of a machine, in the order of power; none without one."""
+    return () if machine is None else drivetrain(machine)[1]
 
 
 def _values(section: Section, model: type[Section]) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from siggen.config.dynamics import Dynamics, RotorSection
 from siggen.config.gears import GearsSection, Pair, Wheel
-from siggen.config.short_form import names_in
+from siggen.config.short_form import names_in, stages_of
 from siggen.config.stages import OF_BOTH_MESHES, Stage, turned_teeth
 from siggen.errors import Problem
 from siggen.keys.number import bounds
@@ -25,13 +25,13 @@ def stage_problems(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
 
 def most_teeth_per_turn(sections: Mapping[str, Any]) -> float:
     """Return the teeth of the fastest mesh per turn of the first pinion."""
-    behind = turned_teeth(sections["gears"], sections.get("stages", ()))
+    behind = turned_teeth(sections["gears"], stages_of(sections["machine"]))
     return float(max(*sections["gears"].teeth_of("pinion"), 0, *behind))
 
 
 def pair_of(sections: Mapping[str, Any], mesh: str) -> Pair:
     """Return the section `gears` of a mesh."""
-    found: Pair = next((one.gears for one in sections["stages"] if one.name == mesh), sections["gears"])
+    found: Pair = next((one.gears for one in stages_of(sections["machine"]) if one.name == mesh), sections["gears"])
     return found
 
 
@@ -40,18 +40,18 @@ BESIDE = "with several meshes"
 
 def _beside(sections: Mapping[str, Any]) -> Iterator[Problem]:
     """Yield what gearboxes with further meshes cannot have."""
-    if not sections.get("stages"):
+    if not (stages := stages_of(sections["machine"])):
         return
     if "dynamics" in sections:
         yield from _of_dynamics(sections["dynamics"], sections.get("housing"))
-    for index, stage in enumerate(sections["stages"]):
+    for index, stage in enumerate(stages):
         at, allowed = f"stages.{index}.gear", "allowed: none on a shaft behind the second"
         if (value := stage.gear.eccentricity_um) != RotorSection.model_fields["eccentricity_um"].default:
             yield Problem(f"{at}.eccentricity_um", str(value), allowed)
         if stage.gear.bearing.geometry is not None:
             yield Problem(f"{at}.bearing.geometry", "a section", allowed)
     if "gears" in sections:
-        yield from _of_gears(sections["gears"], sections["stages"])
+        yield from _of_gears(sections["gears"], stages)
     background = sections.get("background")
     if background is not None and background.second_stage is not None:
         yield Problem("background.second_stage", "a section", f"allowed: null {BESIDE}, which are all simulated")
@@ -84,7 +84,7 @@ def _of_gears(gears: GearsSection, stages: tuple[Stage, ...]) -> Iterator[Proble
 
 def _idlers(sections: Mapping[str, Any], names: Names) -> Iterator[Problem]:
     """Yield numbers of an idler that it cannot have in both of its meshes, and damage that takes both of its flanks."""
-    stages: tuple[Stage, ...] = sections.get("stages", ())
+    stages = stages_of(sections["machine"])
     if "gears" not in sections:
         return
     front: Pair = sections["gears"]
