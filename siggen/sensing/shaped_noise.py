@@ -8,7 +8,6 @@ f_s/taps.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
 
 import numpy as np
 
@@ -52,14 +51,6 @@ class ShapedNoise:
         values = np.concatenate([self._before, self._rng.standard_normal(count)])
         length = filter_length(values.size, 0)
         spectrum = np.fft.rfft(values, length)
-        spectrum *= _spectrum(self._taps.tobytes(), length)
+        spectrum *= np.fft.rfft(self._taps, length)
         self._before = values[count:].copy()
         return np.asarray(np.fft.irfft(spectrum, length)[self._taps.size - 1 : values.size])
-
-
-@lru_cache(maxsize=8)  # records of a gearbox share filters
-def _spectrum(taps: bytes, length: int) -> ComplexArray:
-    """Return the spectrum (length // 2 + 1,) of the taps in so many bytes."""
-    found = np.fft.rfft(np.frombuffer(taps), length)
-    found.setflags(write=False)
-    return found

@@ -38,7 +38,6 @@ class FunctionNames:
         return next(i for i, name in enumerate(zip(self.kind, self.end, self.parity, strict=True)) if name == wanted)
 
 
-@lru_cache(maxsize=256)
 def names(bubbles: int, mirrored: bool) -> FunctionNames:
     """Return what the functions of a line with so many bubbles are."""
     ends, parities = ((0, 0, 0, 0), (0, 1, 0, 1)) if mirrored else ((0, 1, 0, 1), (-1,) * 4)

@@ -8,7 +8,6 @@ D^2)^2 = 4 D^2 P_1, D = w_2 - w_1: a quartic. Points that a deeper damage hides 
 
 from __future__ import annotations
 
-from functools import lru_cache
 from math import sqrt
 from typing import NamedTuple
 
@@ -277,16 +276,8 @@ def _row_kinks(i: int, pits: FloatArray, strips: Strips, face_width: float, out:
 
 def section_kinks(pits: FloatArray, face_width: float) -> FloatArray:
     """Return all heights where the section of a flank with `pits` (n, 14) changes its form, ascending (k,) [m]."""
-    return _known_kinks(pits.shape, pits.tobytes(), face_width)
-
-
-@lru_cache(maxsize=8)  # tables and labels ask five times for the same tooth
-def _known_kinks(shape: tuple[int, ...], rows: bytes, face_width: float) -> FloatArray:
-    pits = np.frombuffer(rows).reshape(shape).copy()
     # numba's own unique costs a second of compilation
-    found = _merged(np.unique(_kinks(pits, strips_of(pits), face_width)))
-    found.setflags(write=False)
-    return found
+    return _merged(np.unique(_kinks(pits, strips_of(pits), face_width)))
 
 
 @entry(cache=True)
