@@ -142,7 +142,7 @@ def _problem(gearbox: PossibleGearbox, pair: GearPair, tilts: FlankTilts) -> Pro
     thin_m = min(shaft.diameter_m for shaft in corners(gearbox.shaft(side, pair)))
     thick_m = 2.0 * pair.member(side).root_radius_m
     received = (
-        f"{gearbox.written(path)}, with side the flanks tilt by {1e6 * tilts.median_rad():.0f} urad under "
+        f"{gearbox.written(path)}, with which the flanks tilt by {1e6 * tilts.median_rad():.0f} urad under "
         f"{gearbox.largest_torque_nm:g} N m, with {own_path('gears.youngs_modulus_gpa')} "
         f"{pair.youngs_modulus_pa / 1e9:g} and {own_path(bearing)} {gearbox.written(bearing)}"
     )

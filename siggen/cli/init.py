@@ -106,7 +106,6 @@ def init(
 
 
 def _name(out: Path) -> str:
-    """Return the file's name as the name of a set: lower-case letters, digits, - and _."""
-    import re
-
-    return re.sub(r"[^a-z0-9_-]", "_", out.stem.lower()).lstrip("_-") or "rig"
+    """Return the file's name as the name of a set: letters, digits, '.', - and _."""
+    kept = (c if c.isascii() and (c.isalnum() or c in ".-_") else "_" for c in out.stem)
+    return "".join(kept).lstrip("._-") or "rig"

@@ -20,7 +20,7 @@ from siggen.config.states import SEVERITIES, StateSection
 from siggen.errors import Problem
 from siggen.faults.fault import Fault
 from siggen.faults.registry import COMBINED, HEALTHY, kinds_called
-from siggen.keys.by_name import named_entries
+from siggen.keys.by_name import BY_NAME, named_entries
 from siggen.keys.number import bounds
 from siggen.keys.problems import nearest
 from siggen.keys.teeth import most_teeth
@@ -37,6 +37,7 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
     """Return what is contradictory between the valid sections of a configuration."""
     checks: list[Callable[[Mapping[str, Any], Mapping[str, object]], Iterable[Problem]]] = [
         life_problems,
+        _names_alike,
         _sample_count,
         _band,
         _growth,
@@ -57,6 +58,16 @@ def consistency_problems(sections: Mapping[str, Any], raw: Mapping[str, object])
         sets_problems,
     ]
     return [problem for check in checks for problem in check(sections, raw)]
+
+
+def _names_alike(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:
+    """Yield states and sensors whose names differ from another one's in case alone."""
+    for key in BY_NAME:
+        names = list(sections.get(key, {}))
+        for index, name in enumerate(names):
+            if alike := [other for other in names[:index] if other.lower() == name.lower()]:
+                allowed = "allowed: names that differ by more than their case: readers of columns may not tell"
+                yield Problem(f"{key}.{name}", f"'{name}' beside '{alike[0]}'", allowed)
 
 
 def _sample_count(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iterator[Problem]:

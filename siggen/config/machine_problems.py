@@ -61,18 +61,18 @@ def _names(machine: MachineSection) -> Iterator[Problem]:
             if name.lower() in TAKEN:
                 allowed = f"allowed: another name than {', '.join(TAKEN)}"
                 yield Problem(f"machine.{key}.{name}", "a name that means something else", allowed)
-    meshes = [one.name for one in machine.meshes]
+    meshes = [one.name.lower() for one in machine.meshes]
     for gear in machine.gears:
-        if gear.name in meshes:
+        if gear.name.lower() in meshes:
             yield Problem(f"machine.gears.{gear.name}", f"'{gear.name}', as a mesh is called", "allowed: another name")
-    flanks = {f"{mesh.name}_{name}" for mesh in machine.meshes for name in idlers(machine)}
+    flanks = {f"{mesh.name}_{name}".lower() for mesh in machine.meshes for name in idlers(machine)}
     for gear in machine.gears:
-        if gear.name in flanks:
+        if gear.name.lower() in flanks:
             received = f"'{gear.name}', as columns name a flank of an idler by its mesh"
             yield Problem(f"machine.gears.{gear.name}", received, "allowed: a name whose columns are its own")
-    columns = {f"mesh_{one.name}_hz" for one in machine.meshes}
+    columns = {f"mesh_{one.name}_hz".lower() for one in machine.meshes}
     for shaft in machine.shafts:
-        if f"{shaft.name}_shaft_hz" in columns:
+        if f"{shaft.name}_shaft_hz".lower() in columns:
             received = f"'{shaft.name}', whose column {shaft.name}_shaft_hz a mesh has too"
             yield Problem(f"machine.shafts.{shaft.name}", received, "allowed: a name whose columns are its own")
 

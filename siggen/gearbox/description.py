@@ -113,7 +113,12 @@ def class_words(design: SetDesign) -> dict[str, tuple[str, ...]]:
 
 def machine_word(design: SetDesign) -> str:
     """Return what its gearboxes are called."""
-    return "spur gear pair" if design.config.machine is None else "gearbox"
+    config = design.config
+    if config.machine is not None:
+        return "gearbox"
+    if config.planetary is not None:
+        return "planetary gear set"
+    return "spur gear pair" if config.gears.helix_deg == 0.0 else "helical gear pair"
 
 
 def tolerances_text(design: SetDesign) -> str:

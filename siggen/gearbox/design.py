@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from siggen.config import Config, by_reference, parse
 from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS, carried_mesh_harmonics
 from siggen.config.stage_problems import most_teeth_per_turn
-from siggen.errors import ConfigError
+from siggen.errors import ConfigError, UsageError
 from siggen.faults.fault import Fault
 from siggen.gearbox.configured import gearbox_config, gearbox_life, inspection_count, pair_of
 from siggen.gearbox.draw import draw_operating_point, draw_specimen
@@ -323,6 +323,18 @@ class SetDesign:
     def by_reference(self, steps: int) -> SetDesign:
         """Return the design, integrated by the reference with so many steps per sample."""
         return self.with_sections(dynamics=by_reference(self.config.dynamics, steps))
+
+
+def expect_design(design: object) -> None:
+    """Refuse what is no design, such as the name of its file.
+
+    Raises
+    ------
+    UsageError
+        If it is none.
+    """
+    if not isinstance(design, SetDesign):
+        raise UsageError(f"design: received {design!r}; allowed: what siggen.load_config returns of a file or preset")
 
 
 def design_of(raw: Mapping[str, Any], source: str) -> SetDesign:

@@ -187,7 +187,7 @@ Distribution: TypeAlias = Uniform | LogUniform | Normal | Choice
 class Changed:
     """`times` · a number + `add`: the same uniform gives the value of the same rank (no file can hold one).
 
-    A factor or shift that is a distribution itself is not drawn yet: then only bounds are known.
+    A gearbox has its factor and shift drawn; checks of a set see them as distributions, at the same rank.
     """
 
     number: float | Distribution
@@ -195,16 +195,11 @@ class Changed:
     add: float | Distribution = 0.0
 
     def at(self, u: float) -> float:
-        """Return the value at the uniform of the distribution.
-
-        Raises
-        ------
-        TypeError
-            If factor or shift have not been drawn.
-        """
-        if not (isinstance(self.times, float) and isinstance(self.add, float)):
-            raise TypeError(f"a drawn factor and shift were expected, received {self.times} and {self.add}")
-        return self.times * (self.number if isinstance(self.number, float) else self.number.at(u)) + self.add
+        """Return the value at the uniform of the distribution."""
+        times, number, add = (
+            one if isinstance(one, float) else one.at(u) for one in (self.times, self.number, self.add)
+        )
+        return times * number + add
 
     def bounds(self) -> tuple[float, float]:
         """Return the smallest and the largest value of all combinations."""

@@ -12,11 +12,11 @@ from siggen.checks.loading import load_config
 from siggen.columns.drivetrain import GearTrain, gear_train
 from siggen.columns.record import label_columns
 from siggen.errors import UsageError
-from siggen.gearbox.design import SetDesign
+from siggen.gearbox.design import SetDesign, expect_design
 from siggen.gearbox.specimen import Specimen
 from siggen.keys.column import Column
 from siggen.keys.user_name import SENSOR, SENSOR_TEXT
-from siggen.library.arguments import finite, of_kind, one_of, refused, saying
+from siggen.library.arguments import finite, one_of, refused, saying
 from siggen.library.damage import BearingSpall, Damage, DamagedPlace, Wear, entries
 from siggen.library.sensors import DIRECTIONS, Channel, PassedSensor, Sensor, reading_input
 from siggen.library.shape_fault import ShapeFault
@@ -35,7 +35,7 @@ class State:
     Attributes
     ----------
     name : str
-        Lower-case letters, digits, - and _, beginning with a letter.
+        Letters, digits, - and _, beginning with a letter.
     damages : tuple of Damage
         What of gears and bearings is damaged. Of a state that `draw` returned it is left to the set, and empty here.
     sham : bool
@@ -325,7 +325,7 @@ def draw(design: SetDesign, number: int = 0) -> Gearbox:
     UsageError
         If the number is none.
     """
-    of_kind("design", design, SetDesign, "what load_config returns")
+    expect_design(design)
     if not isinstance(number, int) or isinstance(number, bool) or number < 0:
         raise refused("number", repr(number), "0, 1, 2 and so on")
     states = design.state_names[: design.inspections(number)]

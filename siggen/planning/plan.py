@@ -13,7 +13,7 @@ from functools import lru_cache
 from itertools import chain, pairwise
 from typing import overload
 
-from siggen.gearbox.design import SetDesign
+from siggen.gearbox.design import SetDesign, expect_design
 from siggen.seeding import Stream, generator
 from siggen.sensors.converter import FROM_NOISE
 from siggen.sensors.sensor import SensorBase
@@ -130,6 +130,7 @@ class Records(Sequence[PlannedRecord]):
 
 def plan(design: SetDesign) -> Records:
     """Return all records of a set in ascending order, worked out one by one."""
+    expect_design(design)
     return Records(design)
 
 

@@ -9,7 +9,7 @@ from siggen.dataset.folder import is_finished
 from siggen.dataset.storage_at import storage_at
 from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
-from siggen.gearbox.design import SetDesign
+from siggen.gearbox.design import SetDesign, expect_design
 from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import ALLOWED_LOSS, LossLimit
 from siggen.sets.run_journal import Events
@@ -59,6 +59,7 @@ def generate(
     EngineError
         If a simulation raised, or workers kept dying. Committed shards stay.
     """
+    expect_design(design)
     limit = LossLimit(design, allowed_loss)
     storage = storage_at(out)
     with storage.writing():

@@ -24,7 +24,7 @@ from siggen.engines.protocol import Engine
 from siggen.engines.registry import engine_of
 from siggen.engines.serial import SerialEngine
 from siggen.errors import DatasetError, UsageError, counted
-from siggen.gearbox.design import SetDesign, stored_design
+from siggen.gearbox.design import SetDesign, expect_design, stored_design
 from siggen.planning.plan import ShardPlan
 from siggen.sets.committed_shards import promised
 from siggen.sets.interruption import Interruption
@@ -85,6 +85,7 @@ def generate_part(
     DatasetError, UsageError, InterruptionError, LossError, EngineError
         As of `generate`.
     """
+    expect_design(design)
     chosen, limit = SetPart(*part), LossLimit(design, allowed_loss)
     storage = storage_at(out)
     with storage.writing():

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from siggen.checks.loading import load_config
+from siggen.checks.plausibility import implausible
 from siggen.config import yaml_text
 from siggen.errors import ConfigError
 from tests.command import command
@@ -77,3 +78,24 @@ def test_a_planetary_section_that_is_wrong_brings_no_problem_of_what_names_its_g
     with pytest.raises(ConfigError) as refused:
         load_config(raw)
     assert [problem.path for problem in refused.value.problems] == ["planetary.ring_teeth"]
+
+
+DRAWN_CHANGES = (
+    "pinion.mass_kg", "pinion.bearing.stiffness_n_per_m", "gear.bearing.damping_n_s_per_m", "gear.mass_kg",
+    "shafts.driver.diameter_mm", "input_coupling.stiffness_nm_per_rad", "load_inertia_kg_m2", "unbalance.grade_mm_s",
+    "friction.oil_temperature_c", "mesh.structure_damping_ratio",
+)  # fmt: skip
+
+
+def test_any_number_of_the_machine_may_change_by_a_drawn_factor() -> None:
+    changes = {f"dynamics.{key}": {"times": [0.85, 0.95]} for key in DRAWN_CHANGES}
+    states = {"others": None, "healthy": {}, "other": {"fault": "rebuilt", "severity": "slight", "changes": changes}}
+    design = load_config({"extends": "quickstart", "states": states})
+    assert implausible(design.possible) == ()  # which looks at the ends of both laws
+    first, second = (design.gearbox(number) for number in (0, 1))
+    ratios = [
+        one.in_state(1).train.first.pinion.mass_kg / one.in_state(0).train.first.pinion.mass_kg
+        for one in (first, second)
+    ]
+    assert all(0.85 <= ratio <= 0.95 for ratio in ratios)
+    assert ratios[0] != ratios[1]

@@ -337,6 +337,15 @@ def test_messages_speak_of_gears_and_not_of_programs(changes, path, received, al
             assert jargon not in f"{problem.received} {problem.allowed}"
 
 
+def test_states_and_sensors_whose_names_differ_in_case_alone_are_refused():
+    sensor = minimal()["sensors"]["bearing"]
+    found = parse(minimal(sensors={"end": sensor, "End": sensor}, states__HEALTHY={})).problems
+    assert [(one.path, one.received) for one in found] == [
+        ("states.HEALTHY", "'HEALTHY' beside 'healthy'"),
+        ("sensors.End", "'End' beside 'end'"),
+    ]
+
+
 def test_all_mistakes_are_reported_at_once():
     changes = {
         "seed": "x",

@@ -232,7 +232,10 @@ def test_its_row_tells_the_slip_that_its_cage_has_in_this_record() -> None:
         ({"element": "ball", "length_mm": 13.0}, {}, "length_mm", "half of the ball's girth"),
         ({"length_mm": [1.0, 40.0]}, {}, "length_mm", "the spacing of the balls"),
         ({"depth_mm": 4.0}, {}, "depth_mm", "below 3.97 mm, the radius of a ball"),
-        ({"length_mm": 12.0}, {"dynamics__pinion__bearing": {"balls": 14}}, "length_mm", "the spacing of the balls"),
+        (
+            {"length_mm": 12.0}, {"dynamics__pinion__bearing": {"geometry": {"balls": 14}}},
+            "length_mm", "the spacing of the balls",
+        ),
         ({"geometry": {"balls": 8}}, {}, "geometry", "known keys: "),
         ({"element": "cage"}, {}, "element", "outer"),
     ],
@@ -249,8 +252,8 @@ def test_what_cannot_be_is_refused_with_what_is_allowed(
 
 
 def test_a_spall_is_in_the_bearing_of_its_shaft_and_else_in_a_6205() -> None:
-    bearing = {"balls": 8, "ball_diameter_mm": 12.3, "pitch_diameter_mm": 46.0, "clearance_um": 5.0}
-    made = with_states(SPALL, {**SPALL, "bearing": "gear_bearing"}, dynamics__gear__bearing=bearing)
+    geometry = {"balls": 8, "ball_diameter_mm": 12.3, "pitch_diameter_mm": 46.0, "clearance_um": 5.0}
+    made = with_states(SPALL, {**SPALL, "bearing": "gear_bearing"}, dynamics__gear__bearing={"geometry": geometry})
     (plain,), (given,) = sources_of(made, 1), sources_of(made, 2)
     found, default = given.spall.bearing, plain.spall.bearing
     assert default.balls == 9

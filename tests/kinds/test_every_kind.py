@@ -62,7 +62,7 @@ Records = dict[tuple[str, str], dict[str, Any]]
 
 def signals(record: dict[str, Any], gearbox: siggen.Gearbox) -> dict[str, np.ndarray]:
     """Return channel -> signal of a record as its set has it."""
-    sensors = gearbox._config.sensors
+    sensors = gearbox._design.sensors
     columns = {name: sensor.quantity.column(name) for sensor in sensors for name, _ in sensor.channels}
     return {name: np.asarray(record[column], dtype=np.float64) for name, column in columns.items()}
 

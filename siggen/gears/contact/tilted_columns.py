@@ -60,7 +60,7 @@ def tilted_columns(solver: TableSolver, row: KindRow, chosen: IntArray, upright:
     curves = scale * _between(chosen[stations], shares, chosen)
     curves[:, :, UPRIGHT] = upright[:, :, 0]
     keep_rising(solver.node_m, curves)
-    pushed, slope = (np.moveaxis(curves[..., side], 1, -1) for side in (FORCE, SLOPE))
+    pushed, slope = (np.moveaxis(curves[..., column], 1, -1) for column in (FORCE, SLOPE))
     curves[..., ENERGY] = np.moveaxis(energy_j(solver.node_m, pushed, slope), -1, 1)
     return np.asarray(curves)
 

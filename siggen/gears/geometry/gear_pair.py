@@ -269,7 +269,7 @@ class GearPair:
 
     def member(self, side: Side) -> SpurGear:
         """Return one of its gears."""
-        return self.pinion if side == Side.DRIVER else self.gear
+        return self.pinion if Side(side) is Side.DRIVER else self.gear
 
 
 @dataclass(frozen=True, slots=True)

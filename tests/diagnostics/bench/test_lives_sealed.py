@@ -35,7 +35,7 @@ CONFIG: dict[str, Any] = {
     "mesh_harmonics": 3,
     "operating_points": [{"speed_hz": 30.0, "torque_nm": 60.0}],
     "states": None,
-    "life": {"reference_torque_nm": 60.0, "scale": 0.03, "interval_h": 0.5, "most": 11, "removed_share": 0.2},
+    "life": {"reference_torque_nm": 60.0, "scale": 0.03, "interval_h": 0.5, "most": 11, "removed_share": 0.3},
 }
 """Gearboxes that fail after 2 to 6 h."""
 PARTS, GEARBOXES = ("same", "other_load"), 7
