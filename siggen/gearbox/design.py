@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
+from itertools import pairwise
 from math import ceil
 from typing import Any, NamedTuple
 
 from siggen.config import Config, by_reference, parse
 from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS, carried_mesh_harmonics
 from siggen.config.stage_problems import most_teeth_per_turn
+from siggen.config.stages import shaft_orders
 from siggen.errors import ConfigError, UsageError
 from siggen.faults.fault import Fault
 from siggen.gearbox.configured import gearbox_config, gearbox_life, inspection_count, pair_of
@@ -20,7 +23,7 @@ from siggen.gearbox.possible import PossibleGearbox
 from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.keys.number import Number, bounds
 from siggen.keys.yaml_source import STORED_NUMBERS, parse_yaml, yaml_text
-from siggen.names import Names
+from siggen.names import EITHER, Names
 from siggen.sensors.places import Places
 from siggen.sensors.sensor import SensorBase
 
@@ -307,14 +310,23 @@ class SetDesign:
         return self.with_sections(dynamics=parallel, states=states, duration_s=duration_s)
 
     def shortened(self, turns: float) -> SetDesign:
-        """Return the design with records of so many turns of the slower shaft with damage, without internals."""
+        """Return the design with records of so many turns of the slowest gear with damage, without internals."""
         config = self.config
         slowest_hz = min(abs(bound) for point in config.operating_points for bound in bounds(point.speed_hz))
-        on_gear = any(getattr(one, "gear", "pinion") != "pinion" for one in config.damages)
-        ratio = config.gears.gear.teeth / config.gears.pinion.teeth if on_gear else 1.0
-        wanted_s = turns * ratio / max(slowest_hz, turns / config.duration_s)
+        wanted_s = turns / (self._damaged_turns * max(slowest_hz, turns / config.duration_s))
         duration_s = min(ceil(wanted_s * config.fs_hz) / config.fs_hz, config.duration_s)
         return self.with_sections(duration_s=duration_s, internals=None)
+
+    @property
+    def _damaged_turns(self) -> float:
+        """Turns of the slowest gear with damage per turn of the first shaft; 1 without damage."""
+        first, stages, names = self.config.gears, self.config.stages, self.names
+        orders = shaft_orders(Fraction(first.pinion.teeth, first.gear.teeth), stages)
+        meshes = zip(names.meshes, pairwise(orders), strict=False)  # the ring of a planetary set turns no shaft
+        turns = {gear.word: order for mesh, ends in meshes for gear, order in zip(mesh.gears, ends, strict=True)}
+        either = {word: names.mesh(mesh).driven.word for word, (mesh, side) in names.flanks.items() if side == EITHER}
+        hit = (either.get(word, word) for one in self.config.damages for word in one.hit_gears if word)
+        return min((turns.get(word, orders[-1]) for word in hit), default=1.0)
 
     def unrounded(self) -> SetDesign:
         """Return the design with converters that do not round."""

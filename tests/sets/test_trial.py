@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+from siggen.checks.loading import load_config
 from siggen.planning.plan import planned_record
 from siggen.sets.record_cost import START_S, RecordTime, SetCost, set_cost
 from siggen.sets.trial import RECORDS, TURNS, StateTrial, trial
+from tests.config.mill import mill
 from tests.config.minimal import by_name, design
+from tests.config.staged import SPALL
 from tests.dataset.fake_set import fake_config, fake_physics, simulate_none, simulate_with_failures
 
 
@@ -40,6 +43,13 @@ def test_records_of_a_trial_are_short_and_those_of_the_set() -> None:
     assert 8 <= short.duration_s * whole.config.operating_points[0].speed_hz < 8.01
     assert planned_record(short, 3) == planned_record(whole, 3)
     assert design(duration_s=0.1).shortened(TURNS).duration_s == 0.1
+
+
+@pytest.mark.parametrize(("gear", "turns"), [("ida", 1.0), ("eva", 18 / 47), ("karl", 18 / 47 * 17 / 52)])
+def test_records_of_a_trial_hold_the_turns_of_the_slowest_gear_with_damage(gear: str, turns: float) -> None:
+    states = {"healthy": {}, "severe": {"damage": {**SPALL, "gear": gear, "teeth": 1}}}
+    short = load_config(mill(duration_s=10.0, states=states)).shortened(TURNS)
+    assert 8 <= turns * short.duration_s * 30.0 < 8.01
 
 
 def test_a_sample_takes_gearboxes_where_states_are_few_and_states_where_they_are_many() -> None:
