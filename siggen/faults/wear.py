@@ -12,7 +12,6 @@ from siggen.errors import Problem
 from siggen.faults.fault import Fault, HitTeeth
 from siggen.faults.flank_place import MODULE
 from siggen.faults.growth import Growth
-from siggen.gears.contact.table_options import reference_force_n
 from siggen.gears.damage.part import Parts
 from siggen.gears.damage.wear import LABEL_POINTS, WornFlanks, worn_until
 from siggen.gears.geometry.gear_pair import GearPair
@@ -70,7 +69,7 @@ class FlankWear(Fault):
         pair = growth.pair
         worn = worn_until(
             pair,
-            growth.load_at_rest(OF_REFERENCE * reference_force_n(pair)),
+            growth.load_at_rest(OF_REFERENCE * pair.reference_force_n),
             COEFFICIENT_M2_PER_N,
             depth_m=1e-6 * constant(own.depth_um),
         )

@@ -13,7 +13,6 @@ from siggen.gearbox.flank_waves import SpecimenWaves, drawn_waves
 from siggen.gearbox.mesh_damage import LoadsAtRest, MeshDamage, mesh_state
 from siggen.gearbox.pair import mesh_options
 from siggen.gearbox.tooth_errors import MadeWith, SpecimenErrors, drawn_errors
-from siggen.gears.contact.table_options import reference_force_n
 from siggen.gears.damage.part import Parts
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.stiffness_options import StiffnessOptions
@@ -151,4 +150,4 @@ def largest_force_n(points: Sequence[OperatingRange], pair: GearPair, turning: f
     any force, so that no operating point acts on the records of another.
     """
     torque = max(abs(1.0 / turning * limit) for point in points for limit in bounds(point.torque_nm))
-    return max(3.0 * torque / pair.pinion.base_radius_m, reference_force_n(pair))
+    return max(3.0 * torque / pair.pinion.base_radius_m, pair.reference_force_n)

@@ -13,7 +13,7 @@ from siggen.arrays import FloatArray, IntArray
 from siggen.gears.contact.face_gaps import FaceGaps, face_gaps
 from siggen.gears.contact.helical_slices import helical_gaps, helical_missing_m, helical_rest
 from siggen.gears.contact.pair_rest import PairRest, pair_rest
-from siggen.gears.contact.table_options import TableOptions, face_slices, half_width, reference_force_n
+from siggen.gears.contact.table_options import TableOptions, face_slices, half_width
 from siggen.gears.damage.flank_chords import FlankChords, flank_chords
 from siggen.gears.damage.lost_shape import shapes_touching_m
 from siggen.gears.damage.part_chip import standing_share
@@ -172,7 +172,7 @@ def _rest(
 def _window(pair: GearPair, chords: list[FlankChords], position_m: FloatArray) -> slice:
     """Return the points from the first to the last at which damage of either flank may be felt."""
     along = (position_m, pair.line_of_action_m - position_m)
-    reach = FELT_HALF_WIDTHS * half_width(pair, position_m, reference_force_n(pair))
+    reach = FELT_HALF_WIDTHS * half_width(pair, position_m, pair.reference_force_n)
     near = np.zeros(position_m.size, dtype=bool)
     for flank, path in zip(chords, along, strict=True):
         holds = np.arange(flank.low.shape[1]) < flank.intervals[:, None]
@@ -196,7 +196,7 @@ def felt(pair: GearPair, row: KindRow, healthy: KindRow) -> np.ndarray:
     left, right = row.gaps.left_m, row.gaps.right_m
     other = (left != row.elsewhere.left_m[window]) | (right != row.elsewhere.right_m[window])
     middle = carrying_middle_m(pair, row.position_m[window])
-    reach = FELT_HALF_WIDTHS * half_width(pair, middle, reference_force_n(pair))
+    reach = FELT_HALF_WIDTHS * half_width(pair, middle, pair.reference_force_n)
     if row.slice_missing_m is not None and row.slice_missing_m is not healthy.slice_missing_m:
         sound = 0.0 if healthy.slice_missing_m is None else healthy.slice_missing_m
         found |= np.any(row.slice_missing_m != sound, axis=1)

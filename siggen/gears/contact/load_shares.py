@@ -8,7 +8,7 @@ from siggen.arrays import FloatArray
 from siggen.gears.contact.kind_row import kind_row
 from siggen.gears.contact.loads_under_force import loads_under_force
 from siggen.gears.contact.table_columns import TYPICAL_SHARE, row_faces, table_solver
-from siggen.gears.contact.table_options import TableOptions, face_slices, reference_force_n
+from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.geometry.face_shares import FaceShares
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.helical import slice_shifts_m
@@ -29,7 +29,7 @@ def load_shares(
     lead = np.zeros(slices) if lead_m is None else np.asarray(lead_m, dtype=np.float64)
     solver = table_solver(pair, stiffness, options, lead - lead.min())
     row = kind_row(pair, stiffness, options, options.healthy_columns)
-    force_n = TYPICAL_SHARE * reference_force_n(pair)
+    force_n = TYPICAL_SHARE * pair.reference_force_n
     chosen = np.arange(options.healthy_columns)
     faces = row_faces(solver, row, chosen)
     low, high = (

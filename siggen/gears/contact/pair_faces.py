@@ -13,7 +13,7 @@ from siggen.gears.contact.face_gaps import FaceGaps
 from siggen.gears.contact.face_slices import FaceSlices
 from siggen.gears.contact.line_kernel import kernel_family, line_kernels
 from siggen.gears.contact.pair_rest import PairRest
-from siggen.gears.contact.table_options import half_width, reference_force_n
+from siggen.gears.contact.table_options import half_width
 from siggen.gears.contact.tooth_kernel import ToothKernel, tooth_kernel, unit_tooth
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.stiffness.hertz import centre_line_depth
@@ -129,7 +129,7 @@ def _teeth(unit: ToothKernel, rest: PairRest, i: int, face_width_m: float, kappa
 def _reference_width(pair: GearPair) -> float:
     """Return Hertz's half width of the reference force in the middle of the path [m]."""
     middle = np.array([0.5 * (pair.contact_start_m + pair.contact_end_m)])
-    return float(half_width(pair, middle, reference_force_n(pair))[0])
+    return float(half_width(pair, middle, pair.reference_force_n)[0])
 
 
 def _typical_depth(pair: GearPair) -> float:

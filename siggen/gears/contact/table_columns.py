@@ -17,7 +17,7 @@ from siggen.gears.contact.force_curve import ForceCurve, write_curves
 from siggen.gears.contact.kind_row import KindRow, first_touch
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.pair_faces import FaceOptions, contact_kappa, pair_faces
-from siggen.gears.contact.table_options import TableOptions, half_width, reference_force_n
+from siggen.gears.contact.table_options import TableOptions, half_width
 from siggen.gears.contact.tilt_rays import RAYS, UPRIGHT, along_rays, ray_way
 from siggen.gears.geometry.gear_pair import GearPair
 from siggen.gears.geometry.helical import carrying_middle_m, slice_radii_m
@@ -60,7 +60,7 @@ def node_places_m(unit_m: float, nodes: int) -> FloatArray:
 
 def table_solver(pair: GearPair, stiffness: StiffnessOptions, options: TableOptions, lead_m: FloatArray) -> TableSolver:
     """Return the solver; a largest force above the reference force adds nodes at the end and moves none."""
-    reference = reference_force_n(pair)
+    reference = pair.reference_force_n
     unit = REACH * approach_under_m(pair, stiffness, reference) / (options.nodes - 1.0) ** 2
     reach = REACH * approach_under_m(pair, stiffness, max(options.largest_force_n, reference))
     nodes = max(options.nodes, int(np.ceil(np.sqrt(reach / unit))) + 1)
@@ -82,7 +82,7 @@ def approach_under_m(pair: GearPair, stiffness: StiffnessOptions, force_n: float
 def row_faces(solver: TableSolver, row: KindRow, chosen: IntArray) -> list[FaceSlices]:
     """Return the slices at fine points (chosen,)."""
     options = solver.options
-    typical = TYPICAL_SHARE * reference_force_n(solver.pair) / solver.pair.face_width_m
+    typical = TYPICAL_SHARE * solver.pair.reference_force_n / solver.pair.face_width_m
     return pair_faces(
         solver.pair,
         row.gaps_at(chosen),

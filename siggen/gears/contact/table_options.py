@@ -17,10 +17,6 @@ CELL_WIDTHS = 1.28
 FEWEST_SLICES, MOST_SLICES = 40, 100
 
 
-REFERENCE_BAND = 1.0 / 40.0
-"""Hertz half width over the relative radius of the flanks under the reference force: 1.4 GPa on steel."""
-
-
 class TableOptions(NamedTuple):
     """How finely the contact is tabulated.
 
@@ -45,21 +41,10 @@ class TableOptions(NamedTuple):
     relief: TipRelief | None = None
 
 
-def reference_force_n(pair: GearPair) -> float:
-    """Return the force that sets slices and nodes [N]: in the middle of the path its band is `REFERENCE_BAND` wide.
-
-    Derived from Hertz: a² = 4 F R/(π E* b), so that the pair alone says what is a large force.
-    """
-    middle = 0.5 * (pair.contact_start_m + pair.contact_end_m)
-    radius = middle * (pair.line_of_action_m - middle) / pair.line_of_action_m
-    modulus = 0.5 * pair.youngs_modulus_pa / (1.0 - pair.poisson_ratio**2)
-    return 0.25 * np.pi * modulus * REFERENCE_BAND**2 * radius * pair.face_width_m
-
-
 def face_slices(pair: GearPair, options: TableOptions) -> int:
     """Return the number of slices: cells of the width at which the kernel holds, within bounds of cost."""
     middle = np.array([0.5 * (pair.contact_start_m + pair.contact_end_m)])
-    width = options.cell_widths * float(half_width(pair, middle, reference_force_n(pair))[0])
+    width = options.cell_widths * float(half_width(pair, middle, pair.reference_force_n)[0])
     return int(np.clip(round(pair.face_width_m / width), FEWEST_SLICES, MOST_SLICES))
 
 

@@ -27,6 +27,8 @@ ADDENDUM, CLEARANCE = 1.0, 0.25
 STEEL_PA, STEEL_POISSON = 206e9, 0.3
 WIDTH_MODULES, BORE_SHARE = 8.0, 0.4
 """Of a pair of which a drawing says no more: face width in modules, bore over root circle (assumed)."""
+REFERENCE_BAND = 1.0 / 40.0
+"""Hertz half width over the relative radius of the flanks under the reference force: 1.4 GPa on steel."""
 MAX_PRESSURE_ANGLE_RAD = radians(45.0)
 
 
@@ -153,6 +155,17 @@ class GearPair:
             lines = (f"{one.where}: received {one.name}, {one.received}; {one.allowed}" for one in problems)
             raise UsageError(f"teeth={teeth} of module {module_mm} mm: " + "\n".join(lines))
         return pair
+
+    @property
+    def reference_force_n(self) -> float:
+        """A large force for this pair alone [N]: in the middle of the path its band is `REFERENCE_BAND` wide.
+
+        Derived from Hertz: a² = 4 F R/(π E* b).
+        """
+        middle = 0.5 * (self.contact_start_m + self.contact_end_m)
+        radius = middle * (self.line_of_action_m - middle) / self.line_of_action_m
+        modulus = 0.5 * self.youngs_modulus_pa / (1.0 - self.poisson_ratio**2)
+        return 0.25 * pi * modulus * REFERENCE_BAND**2 * radius * self.face_width_m
 
     @property
     def driver(self) -> Gear:

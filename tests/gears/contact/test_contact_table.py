@@ -20,7 +20,7 @@ from siggen.gears.contact.table_columns import (
     TYPICAL_SHARE,
     node_places_m,
 )
-from siggen.gears.contact.table_options import TableOptions, face_slices, reference_force_n
+from siggen.gears.contact.table_options import TableOptions, face_slices
 from siggen.gears.damage.flank_chords import flank_chords
 from siggen.gears.damage.outlines import Polygon, rectangle
 from siggen.gears.damage.spall import FlankSpall
@@ -37,7 +37,7 @@ from tests.gears.damage.test_kind_without_outline import Hinge
 STIFFNESS = StiffnessOptions()
 FORCE_N = 1200.0
 OPTIONS = TableOptions(largest_force_n=3.0 * FORCE_N)
-TYPICAL = TYPICAL_SHARE * reference_force_n(gear_pair()) / 20e-3
+TYPICAL = TYPICAL_SHARE * gear_pair().reference_force_n / 20e-3
 POINTS = 1025
 SLICES = face_slices(gear_pair(), OPTIONS)
 

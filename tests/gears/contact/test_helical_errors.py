@@ -10,7 +10,7 @@ from siggen.gears.contact.kind_row import kind_row
 from siggen.gears.contact.load_shares import load_shares
 from siggen.gears.contact.newton_matrix import solver_room
 from siggen.gears.contact.table_columns import TYPICAL_SHARE, row_faces, table_solver
-from siggen.gears.contact.table_options import TableOptions, reference_force_n
+from siggen.gears.contact.table_options import TableOptions
 from siggen.gears.errors.flank_waves import ORDERS, FlankWaves, with_waves
 from siggen.gears.errors.tooth_errors import with_errors
 from siggen.gears.geometry.helical import slice_shifts_m
@@ -37,7 +37,7 @@ def approaches_m(pair, missing_m, chosen):
     """Return the approach of a healthy pair under a typical force, each slice missing what it does, by halving."""
     row, count = kind_row(pair, STIFFNESS, options(pair), 33), missing_m.shape[1]
     row = row._replace(slice_missing_m=row.slice_missing_m + missing_m)
-    force, room, found = TYPICAL_SHARE * reference_force_n(pair), solver_room(count), []
+    force, room, found = TYPICAL_SHARE * pair.reference_force_n, solver_room(count), []
     for slices in row_faces(table_solver(pair, STIFFNESS, options(pair), np.zeros(count)), row, chosen):
         low, high = 0.0, 1e-4
         for _ in range(40):
