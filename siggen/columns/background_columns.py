@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 
 from siggen.columns.of_parts import of_gear, of_shaft
+from siggen.gearbox.background import MACHINES
 from siggen.keys.column import Column, Role, in_role
 
 if TYPE_CHECKING:
@@ -36,13 +37,13 @@ def background_columns(gearbox: Specimen) -> tuple[Column, ...]:
         return ()
     names, columns = gearbox.names, list[Column]()
     if drawn.bearings:
-        columns += [of_shaft(VELOCITY, shaft) for shaft in names.shafts[:2]]
+        columns += [of_shaft(VELOCITY, shaft) for shaft in names.shafts]
     if drawn.machines is not None:
         columns.append(MACHINE)
     if drawn.rubbing is not None:
         columns += [*RUBBING, *(of_gear(DEPTH, gear) for gear in names.first.gears)]
     if drawn.shafts:
-        columns += [of_shaft(COUPLING, shaft) for shaft in names.shafts[:2]]
+        columns += [of_shaft(COUPLING, names.shafts[place]) for place in MACHINES.values()]
     for name in drawn.foreign:
         what = " ".join(name.split("_"))
         columns.append(Column(f"{name}_order", F64, "", f"mesh of the {what}, per turn of the input shaft"))

@@ -61,13 +61,13 @@ class Machines(Section):
 
 
 class ShaftLines(Section):
-    """Lines of both shafts: misaligned couplings, which press on shaft and base, and machine rotors on the base."""
+    """Lines of motor and load: misaligned couplings, which press on first and last shaft and base, and rotors on it."""
 
     coupling_stiffness_n_per_um: Annotated[Number, Within(least=0, most=1000), Usual(0.001, 30)] = Field(
         default=LogUniform(low=0.1, high=1.0), description="radial, per coupling (assumed)"
     )
     rotor_mass_kg: Annotated[Number, Within(least=0, most=100_000), Usual(0.05, 1000)] = Field(
-        default=LogUniform(low=3.0, high=30.0), description="of the machine on each shaft (assumed)"
+        default=LogUniform(low=3.0, high=30.0), description="of motor and load (assumed)"
     )
 
 

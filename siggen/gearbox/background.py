@@ -25,12 +25,11 @@ from siggen.gearbox.background_numbers import (
 from siggen.keys.drawing import SomeSection, draw, in_si
 from siggen.keys.number import constant
 from siggen.keys.section import Section
-from siggen.names import Side
 from siggen.seeding import Stream, named_uniforms
 
 T = TypeVar("T")
-MACHINES = {"motor": Side.DRIVER, "load": Side.DRIVEN}
-"""What stands beside the gearbox, and the shaft that leads there: of the first gear or sun, of its mate or carrier."""
+MACHINES = {"motor": 0, "load": -1}
+"""What stands beside the gearbox, and the place of the shaft that leads there, in the order of power."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,16 +115,17 @@ class DrawnBackground:
 
     Attributes
     ----------
-    bearings, shafts : pinion, gear -> of this shaft
+    bearings : shaft, by its name in sections -> of both its bearings
+    shafts : the same, of those that lead to `MACHINES`
     foreign : second_stage, auxiliary_drive -> that mesh
     angles_rad : motor, load, auxiliary_drive -> direction of its force, from the horizontal
     """
 
     base: Base | None
     rubbing: RubbingLevels | None
-    bearings: Mapping[Side, BearingLevels]
+    bearings: Mapping[str, BearingLevels]
     machines: MachineLevels | None
-    shafts: Mapping[Side, ShaftLevels]
+    shafts: Mapping[str, ShaftLevels]
     foreign: Mapping[str, ForeignLevels]
     angles_rad: Mapping[str, float]
 
@@ -147,20 +147,20 @@ def drawn_background(config: Config, specimen_id: int) -> DrawnBackground | None
     bursts = levels(BurstLevels, BurstNumbers, None if rubbing is None else rubbing.bursts, "rubbing.bursts")
     bands = {} if bearings is None else dict.fromkeys(BANDS, bearings.velocity_um_s)
     meshes = {"second_stage": section.second_stage, "auxiliary_drive": section.auxiliary_drive}
-    both = {role: shaft.word for role, shaft in zip(Side, config.names.shafts, strict=False)}
+    turning = config.names.shafts
     turned = {"auxiliary_drive": "auxiliary_drive", **{name: f"machines.{name}" for name in MACHINES}}
     return DrawnBackground(
         base=None if section.base is None else _base(drawn(BaseNumbers, section.base, "base")),
         rubbing=levels(RubbingLevels, RubbingNumbers, rubbing, "rubbing", bursts=bursts),
         bearings={
-            role: BearingLevels(**in_si(drawn(BearingNumbers, bearings, f"bearings.{shaft}", **bands)))
-            for role, shaft in both.items()
+            shaft.inner: BearingLevels(**in_si(drawn(BearingNumbers, bearings, f"bearings.{shaft.word}", **bands)))
+            for shaft in turning
             if bearings is not None
         },
         machines=levels(MachineLevels, MachineNumbers, section.machines, "machines"),
         shafts={
-            role: _shaft(drawn(ShaftNumbers, shafts, f"shafts.{shaft}"))
-            for role, shaft in both.items()
+            shaft.inner: _shaft(drawn(ShaftNumbers, shafts, f"shafts.{shaft.word}"))
+            for shaft in (turning[place] for place in MACHINES.values())
             if shafts is not None
         },
         foreign={

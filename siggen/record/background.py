@@ -13,11 +13,10 @@ from math import pi
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.drive.comb import Comb, turns_of
+from siggen.dynamics.drive.comb import Comb
 from siggen.dynamics.drive.drive import Rotation
 from siggen.gearbox.background import MACHINES, DrawnBackground, ForeignLevels, MachineLevels, ShaftLevels
 from siggen.gearbox.specimen import Specimen
-from siggen.names import Side
 from siggen.planning.plan import PlannedRecord
 from siggen.record.background_course import BackgroundCourse, course_at
 from siggen.record.bearing_noise import BearingVelocities
@@ -121,27 +120,25 @@ def line_forces(
         labels[f"coupling_force_{shaft}_n"] = levels.coupling_n
     for name, mesh in drawn.foreign.items():
         comb = _foreign(mesh, course, name)
-        own = mesh.shaft_order is not None
-        beside = turns_of(course.angle_rad, comb.sideband_order) if own else course.turns[Side.DRIVEN]
-        add(name, comb.force_n(turns_of(course.angle_rad, comb.order), beside, course.top_order))
+        add(name, comb.force_n(course.turns(comb.order), course.turns(comb.sideband_order), course.top_order))
         labels |= {f"{name}_order": comb.order, f"{name}_force_n": float(comb.amplitude_n[0])}
     return forces, labels
 
 
-def _shaft(levels: ShaftLevels, course: BackgroundCourse, shaft: Side) -> list[tuple[str, FloatArray]]:
+def _shaft(levels: ShaftLevels, course: BackgroundCourse, shaft: str) -> list[tuple[str, FloatArray]]:
     """Return the forces of one coupling along both axes, and of the rotor on its shaft on the base."""
-    order = course.orders[shaft]
+    order = course.shafts[shaft]
     amplitude = levels.coupling_n * 10.0 ** (np.array([0.0, *levels.higher_db]) / 20.0)
     found = []
     for axis in AXES:
         phase = course.phases(f"shafts.{shaft}.{axis}", amplitude.size)
-        found.append((f"{shaft}_shaft/{axis}", Comb(order, amplitude, phase).force_n(course.turns[shaft])))
+        found.append((f"{shaft}_shaft/{axis}", Comb(order, amplitude, phase).force_n(course.turns(order))))
     moment = levels.rotor_kg_m_s / (2.0 * pi * levels.rated_speed_hz * order)
     speed_rad_s = 2.0 * pi * course.point.speed_hz * order
     outward, start = np.array([moment * speed_rad_s**2]), course.phases(f"shafts.{shaft}.rotor", 1)
     # it turns: a quarter of a turn between the axes
     for axis, lag in zip(AXES, (0.0, 0.5 * pi), strict=True):
-        found.append((f"base/{axis}", Comb(order, outward, start - lag).force_n(course.turns[shaft])))
+        found.append((f"base/{axis}", Comb(order, outward, start - lag).force_n(course.turns(order))))
     return found
 
 
@@ -152,6 +149,6 @@ def _foreign(mesh: ForeignLevels, course: BackgroundCourse, name: str) -> Comb:
         mesh.force_share * course.mesh_force_n * number**-mesh.decay_exponent,
         course.phases(name, FOREIGN_LINES),
         10.0 ** (mesh.sideband_db / 20.0),
-        course.orders[Side.DRIVEN] if mesh.shaft_order is None else mesh.shaft_order,
+        [*course.shafts.values()][1] if mesh.shaft_order is None else mesh.shaft_order,
         2.0 * pi * course.uniform(f"background.{name}.sideband.phase"),
     )

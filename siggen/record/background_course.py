@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from math import pi
 
 import numpy as np
@@ -25,14 +26,15 @@ from siggen.specimen.asperities import asperity_share
 class BackgroundCourse:
     """Pinion angle (length,) at the samples of a record and of the history before it, and draws by name.
 
-    Or at a part of them, `history` samples from its first one to that of the record. `turns` are exp(i order Θ)
-    (length,) of both shafts, `orders` their turns per turn of the pinion. `asperity_share` is that of the mean load at
-    the pitch point. `uniform` gives uniforms of the gearbox, `of_gearbox` and `of_record` generators.
+    Or at a part of them, `history` samples from its first one to that of the record. `turns` gives exp(i order Θ)
+    (length,), each order once. `shafts` are the turns of every shaft per turn of the pinion, by its name in sections.
+    `asperity_share` is that of the mean load at the pitch point of `pair`, whose pinion has the angle. `uniform` gives
+    uniforms of the gearbox, `of_gearbox` and `of_record` generators.
     """
 
     angle_rad: FloatArray
-    orders: Mapping[Side, float]
-    turns: Mapping[str, ComplexArray]
+    turns: Callable[[float], ComplexArray]
+    shafts: Mapping[str, float]
     fs_hz: float
     history: int
     pair: GearPair
@@ -48,6 +50,11 @@ class BackgroundCourse:
         return int(self.angle_rad.size)
 
     @property
+    def gears(self) -> dict[Side, float]:
+        """Turns of both gears of the pair per turn of its pinion."""
+        return {Side.DRIVER: 1.0, Side.DRIVEN: self.pair.pinion.teeth / self.pair.gear.teeth}
+
+    @property
     def mesh_force_n(self) -> float:
         """Mean force of the teeth along the line of action."""
         return self.point.torque_nm / self.pair.pinion.base_radius_m
@@ -61,11 +68,16 @@ class BackgroundCourse:
         """Return phases (count,) of the gearbox."""
         return 2.0 * pi * self.of_gearbox(f"background.{name}.phases").random(count)
 
-    def shaft_lines(self, shaft: Side, depth: float, turn: float = 0.0) -> FloatArray:
+    def shaft_lines(self, shaft: str, order: float, depth: float, turn: float = 0.0) -> FloatArray:
         """Return the modulation (length,) by a shaft, the same for all its sources but for a part of a turn."""
         later = 2.0 * pi * turn * np.arange(1.0, SHAFT_LINES + 1.0)
         phase_rad = self.phases(f"modulation.{shaft}", SHAFT_LINES) + later
-        return harmonic_sum(self.turns[shaft], shaft_phasors(depth, phase_rad))
+        return harmonic_sum(self.turns(order), shaft_phasors(depth, phase_rad))
+
+
+def turning(angle_rad: FloatArray) -> Callable[[float], ComplexArray]:
+    """Return what gives exp(i order Θ) (k,) of angles (k,), each order once."""
+    return cache(lambda order: turns_of(angle_rad, order))
 
 
 def course_at(
@@ -76,15 +88,13 @@ def course_at(
     # a fast length may reach further back than any force is followed; there the shaft stands still
     time_s = np.maximum((np.arange(count) + first) / fs_hz, -TRANSIENT_CAP_S)
     angle_rad = rotation.angle_rad(time_s)
-    orders = {Side.DRIVER: 1.0, Side.DRIVEN: pair.pinion.teeth / pair.gear.teeth}
-    of_mesh = point
-    if specimen.planets is not None:
-        orders[Side.DRIVEN] = float(specimen.planets.teeth.carrier_turns)
-        of_mesh = specimen.planets.of_one_mesh(point)
+    planets, turns = specimen.planets, specimen.shaft_turns
+    of_mesh = point if planets is None else planets.of_one_mesh(point)
+    orders = turns if planets is None else (turns[0], planets.teeth.carrier_turns)
     return BackgroundCourse(
         angle_rad,
-        orders,
-        {shaft: turns_of(angle_rad, order) for shaft, order in orders.items()},
+        turning(angle_rad),
+        {shaft.inner: float(order) for shaft, order in zip(specimen.names.shafts, orders, strict=True)},
         fs_hz,
         -first,
         pair,

@@ -10,19 +10,18 @@ As balls pass, a bearing gives way by a drawn size; one whose stiffness follows 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from math import pi, sqrt
 
 import numpy as np
 
-from siggen.arrays import ComplexArray, FloatArray
+from siggen.arrays import FloatArray
 from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
-from siggen.dynamics.drive.comb import Comb, harmonic_sum, turns_of
+from siggen.dynamics.drive.comb import Comb, harmonic_sum
 from siggen.gearbox.background import BearingLevels
 from siggen.gearbox.specimen import Specimen
-from siggen.names import ShaftName, Side
+from siggen.names import ShaftName
 from siggen.record.background_course import BackgroundCourse
 from siggen.sensing.force_density import tabulated
 from siggen.sensing.modulation import LevelCourse, shaft_course
@@ -42,8 +41,6 @@ PASSING_LINES = 3
 VARYING_LINES = 8
 """Of bearings under load: what balls do beyond has less than 1 % of its power (test)."""
 AXES = ("horizontal", "vertical")
-Turned = Callable[[float], ComplexArray]
-"""Order -> exp(i order Θ) (k,) of a course, each once: both axes of a bearing share their cage."""
 WEAKEST = 0.2
 """Displacements of passing balls lie between this share of the drawn one and all of it, by axis (assumed)."""
 
@@ -69,9 +66,9 @@ class _Seat:
     axis: str
 
     @property
-    def shaft(self) -> Side:
-        """Its shaft, by the first mesh's gear on it."""
-        return Side(self.named.inner)
+    def shaft(self) -> str:
+        """Its shaft, by its name in sections."""
+        return self.named.inner
 
     @property
     def stream(self) -> str:
@@ -82,11 +79,12 @@ class _Seat:
 class BearingVelocities:
     """Velocities [m/s] of each bearing's waves, from the first sample of a course on; by input of the background."""
 
-    def __init__(self, bearings: Mapping[Side, BearingLevels], course: BackgroundCourse, specimen: Specimen) -> None:
+    def __init__(self, bearings: Mapping[str, BearingLevels], course: BackgroundCourse, specimen: Specimen) -> None:
         self._bearings = bearings
-        self._loaded = specimen_bearings(specimen)
-        self._sense = {shaft: cage_sense(shaft, housed=specimen.housed) for shaft in bearings}
-        shafts = specimen.names.shafts[: len(bearings)]
+        loaded = specimen_bearings(specimen)
+        self._sense = {shaft.value: cage_sense(shaft, housed=specimen.housed) for shaft in loaded}
+        self._loaded = {shaft.value: one for shaft, one in loaded.items()}
+        shafts = specimen.names.shafts
         self._seats = {f"{shaft.bearing}/{axis}": _Seat(shaft, axis) for shaft in shafts for axis in AXES[::-1]}
         taps = {shaft: _taps(levels, course, shaft) for shaft, levels in bearings.items()}
         self._noise = {
@@ -99,21 +97,21 @@ class BearingVelocities:
     def take(self, course: BackgroundCourse) -> dict[str, FloatArray]:
         """Return the next velocities (k,) by input."""
         random = {shaft: level.take(course.length) for shaft, level in self._levels.items()}
-        found, turned = {}, cache(lambda order: turns_of(course.angle_rad, order))
+        found = {}
         for name, noise in self._noise.items():
             seat = self._seats[name]
             strength = _strength(self._bearings[seat.shaft], course, seat) * random[seat.shaft]
-            found[name] = noise.take(course.length) * np.sqrt(strength) + self._passing(seat, course, turned)
+            found[name] = noise.take(course.length) * np.sqrt(strength) + self._passing(seat, course)
         return found
 
-    def _passing(self, seat: _Seat, course: BackgroundCourse, turned: Turned) -> FloatArray:
+    def _passing(self, seat: _Seat, course: BackgroundCourse) -> FloatArray:
         """Return the velocity (k,) of a displacement with every ball that passes the loaded side."""
         shaft = seat.shaft
         if shaft in self._loaded:
-            return self._varying(seat, self._loaded[shaft], course, turned)
+            return self._varying(seat, self._loaded[shaft], course)
         levels, path = self._bearings[shaft], f"background.bearings.{seat.stream}.passing"
         slip = SLIP[0] + (SLIP[1] - SLIP[0]) * course.of_record(f"background.bearings.{shaft}.slip").random()
-        order = course.orders[shaft] * levels.ball_pass_order * (1.0 - slip)
+        order = course.shafts[shaft] * levels.ball_pass_order * (1.0 - slip)
         size_m = levels.compliance_m * (WEAKEST + (1.0 - WEAKEST) * course.uniform(path))
         count = min(PASSING_LINES, int(course.top_order / order))
         if count == 0:
@@ -121,9 +119,9 @@ class BearingVelocities:
         number = np.arange(1.0, count + 1.0)
         amplitude = size_m * np.power(0.5, number - 1.0) * 2.0 * pi * number * order * course.point.speed_hz
         phase = 2.0 * pi * course.of_record(path).random(PASSING_LINES)[:count]
-        return Comb(order, amplitude, phase).force_n(turned(order))
+        return Comb(order, amplitude, phase).force_n(course.turns(order))
 
-    def _varying(self, seat: _Seat, loaded: LoadedBearing, course: BackgroundCourse, turned: Turned) -> FloatArray:
+    def _varying(self, seat: _Seat, loaded: LoadedBearing, course: BackgroundCourse) -> FloatArray:
         """Return the velocity (k,) of what lies in series with both bearings' spring as balls pass under their load.
 
         Its axes are tied: the spring along each of them gets what pushes as both do.
@@ -135,19 +133,19 @@ class BearingVelocities:
         for end in "ab":
             rng = course.of_record(f"background.bearings.{shaft}.{end}.cage")
             slip = SLIP[0] + (SLIP[1] - SLIP[0]) * rng.random()
-            order = course.orders[shaft] * loaded.bearing.outer_order * (1.0 - slip)
+            order = course.shafts[shaft] * loaded.bearing.outer_order * (1.0 - slip)
             number = np.arange(1.0, 1.0 + min(VARYING_LINES, int(course.top_order / order)))
             rates = np.exp(2j * pi * rng.random() * number) * 2j * pi * number * order * course.point.speed_hz
-            found += harmonic_sum(turned(order), lines[: number.size] * rates / BEARINGS)
+            found += harmonic_sum(course.turns(order), lines[: number.size] * rates / BEARINGS)
         return found
 
 
-def _taps(levels: BearingLevels, course: BackgroundCourse, shaft: Side) -> FloatArray:
-    shaft_hz = course.point.speed_hz * course.orders[shaft]
+def _taps(levels: BearingLevels, course: BackgroundCourse, shaft: str) -> FloatArray:
+    shaft_hz = course.point.speed_hz * course.shafts[shaft]
     return shape_taps(lambda f: velocity_density(levels, shaft_hz, f), TAPS, course.fs_hz)
 
 
-def _level(shaft: Side, levels: BearingLevels, course: BackgroundCourse) -> LevelCourse:
+def _level(shaft: str, levels: BearingLevels, course: BackgroundCourse) -> LevelCourse:
     memory = levels.level_time_s * course.fs_hz
     rng = course.of_record(f"background.bearings.{shaft}.level")
     return LevelCourse(levels.level_std, memory, rng)
@@ -156,4 +154,4 @@ def _level(shaft: Side, levels: BearingLevels, course: BackgroundCourse) -> Leve
 def _strength(levels: BearingLevels, course: BackgroundCourse, seat: _Seat) -> FloatArray:
     """Return the power (k,) of a bearing's noise, of mean 1, as its shaft turns."""
     turn = PHASE_SPREAD * (2.0 * course.uniform(f"background.bearings.{seat.stream}.turn") - 1.0)
-    return shaft_course([course.shaft_lines(seat.shaft, levels.shaft_depth, turn)])
+    return shaft_course([course.shaft_lines(seat.shaft, course.shafts[seat.shaft], levels.shaft_depth, turn)])

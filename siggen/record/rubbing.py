@@ -42,8 +42,8 @@ class RubbingForce:
         self._level = level_process(rubbing, course)
         self._share = rubbing.replayed_share
         self._patterns = {
-            shaft: shaft_pattern(spectrum, course, shaft, order)
-            for shaft, order in (course.orders.items() if self._share > 0.0 else ())
+            gear: gear_pattern(spectrum, course, gear, order)
+            for gear, order in (course.gears.items() if self._share > 0.0 else ())
         }
         self._bursts = None if rubbing.bursts is None else drawn_bursts(rubbing.bursts, course, length)
         self._done = 0
@@ -60,8 +60,8 @@ class RubbingForce:
     def take(self, course: BackgroundCourse) -> FloatArray:
         """Return the force (k,) [N] over the next samples, those of `course`."""
         noise = sqrt(1.0 - self._share) * self._noise.take(course.length)
-        for shaft, pattern in self._patterns.items():
-            noise += sqrt(0.5 * self._share) * replayed(course.angle_rad, course.orders[shaft], pattern)
+        for gear, pattern in self._patterns.items():
+            noise += sqrt(0.5 * self._share) * replayed(course.angle_rad, course.gears[gear], pattern)
         strength = np.sqrt(modulation(self._rubbing, course, self._level.take(course.length)))
         if self._bursts is not None:
             strength += burst_rise(self._bursts, self._done, course.length)
@@ -118,7 +118,7 @@ def force_spectrum(rubbing: RubbingLevels, course: BackgroundCourse) -> ForceSpe
     )
 
 
-def shaft_pattern(spectrum: ForceSpectrum, course: BackgroundCourse, shaft: Side, order: float) -> FloatArray:
+def gear_pattern(spectrum: ForceSpectrum, course: BackgroundCourse, gear: Side, order: float) -> FloatArray:
     """Return what one gear replays over its revolution (points,), of the same density as n at the nominal speed.
 
     Four points per sample: read linearly between them, it is damped by 10 % at half the sampling rate at most.
@@ -129,7 +129,7 @@ def shaft_pattern(spectrum: ForceSpectrum, course: BackgroundCourse, shaft: Side
     rate_hz = points * shaft_hz
     waves = np.zeros(points // 2 + 1, dtype=np.complex128)
     waves[: top + 1] = noise_spectrum(
-        1.0, 2 * top + 1, rate_hz, course.of_gearbox(f"background.rubbing.{shaft}.pattern")
+        1.0, 2 * top + 1, rate_hz, course.of_gearbox(f"background.rubbing.{gear}.pattern")
     ) * sqrt(points / (2 * top + 1))
     return np.asarray(np.fft.irfft(waves * spectrum.density(frequencies(points, rate_hz)), points))
 
@@ -145,7 +145,7 @@ def modulation(rubbing: RubbingLevels, course: BackgroundCourse, level: FloatArr
     table = rubbing_course(course.pair, rubbing.sliding_exponent)
     mesh = periodic_course(course.angle_rad, course.pair.pinion.teeth, table)
     depths = {Side.DRIVER: rubbing.pinion_depth, Side.DRIVEN: rubbing.gear_depth}
-    shafts = [course.shaft_lines(shaft, depth) for shaft, depth in depths.items()]
+    shafts = [course.shaft_lines(gear, order, depths[gear]) for gear, order in course.gears.items()]
     return np.asarray(mesh * shaft_course(shafts) * level)
 
 

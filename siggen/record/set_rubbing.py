@@ -13,12 +13,9 @@ from math import pi
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.drive.comb import turns_of
 from siggen.gearbox.background import RubbingLevels
 from siggen.gearbox.specimen import OperatingPoint, Specimen
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.names import Side
-from siggen.record.background_course import BackgroundCourse
+from siggen.record.background_course import BackgroundCourse, turning
 from siggen.record.rubbing import RubbingForce
 from siggen.specimen.background import AXES, EVEN, SET_MESHES
 
@@ -60,20 +57,15 @@ class SetRubbing:
 
     def _own(self, course: BackgroundCourse, mesh: str, planet: int) -> BackgroundCourse:
         """Return a course as one mesh has it: its driving gear turns against the carrier."""
-        pair, point, turning = self._meshes[mesh]
-        angle_rad = course.angle_rad * ((1.0 - self._carrier) * turning)
-        orders = _orders(pair)
+        pair, point, turns = self._meshes[mesh]
+        angle_rad = course.angle_rad * ((1.0 - self._carrier) * turns)
         return replace(
             course,
             angle_rad=angle_rad,
-            orders=orders,
-            turns={shaft: turns_of(angle_rad, order) for shaft, order in orders.items()},
+            turns=turning(angle_rad),
+            shafts={},
             pair=pair,
             point=point,
             of_record=lambda name: course.of_record(f"{name}.{mesh}.{planet}"),
             of_gearbox=lambda name: course.of_gearbox(f"{name}.{mesh}.{planet}"),
         )
-
-
-def _orders(pair: GearPair) -> dict[Side, float]:
-    return {Side.DRIVER: 1.0, Side.DRIVEN: pair.pinion.teeth / pair.gear.teeth}

@@ -29,7 +29,6 @@ from siggen.dynamics.time.transient import TRANSIENT_CAP_S
 from siggen.gearbox.background import MACHINES, DrawnBackground
 from siggen.gearbox.specimen import Specimen
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.names import Side
 from siggen.sensing.sensor_response import resonance_response
 from siggen.specimen.forced_ways import ChannelWay, Forcing, forced_ways
 from siggen.specimen.structure import linear_structure, linear_train
@@ -116,10 +115,10 @@ def _directions(assembled: Structure, drawn: DrawnBackground) -> dict[str, Float
     if drawn.bearings:
         found |= {name: bearing_direction(assembled, *name.split("/")) for name in bearing_inputs(assembled)}
     if drawn.machines is not None:
-        for name, shaft in MACHINES.items():
-            found[name] = _turned(_stand(assembled, shaft), drawn.angles_rad[name])
-    for shaft in drawn.shafts:
-        rows = _on_rotor(assembled, shaft) - _on_base(assembled)
+        for name, place in MACHINES.items():
+            found[name] = _turned(_stand(assembled, place), drawn.angles_rad[name])
+    for shaft, place in zip(drawn.shafts, MACHINES.values(), strict=bool(drawn.shafts)):
+        rows = _on_rotor(assembled, place) - _on_base(assembled)
         found |= {f"{shaft}_shaft/{axis}": row for axis, row in zip(AXES, rows, strict=True)}
     if drawn.shafts:
         found |= {f"base/{axis}": row for axis, row in zip(AXES, _on_base(assembled), strict=True)}
@@ -151,8 +150,8 @@ def mesh_directions(assembled: Structure) -> dict[str, FloatArray]:
 
 
 def bearing_inputs(assembled: Structure) -> tuple[str, ...]:
-    """Return the bearings of both shafts that machines stand beside, with their axes."""
-    return tuple(f"{place}/{axis}" for place in bearing_places(assembled)[: len(Side)] for axis in AXES[::-1])
+    """Return the bearings of every shaft, with their axes."""
+    return tuple(f"{place}/{axis}" for place in bearing_places(assembled) for axis in AXES[::-1])
 
 
 def _pressed(assembled: Structure, turn_rad: float) -> dict[str, dict[str, float]]:
@@ -172,8 +171,8 @@ def _turned(rows: FloatArray, angle: float) -> FloatArray:
     return np.asarray(cos(angle) * rows[0] + sin(angle) * rows[1])
 
 
-def _on_rotor(assembled: Structure, shaft: Side) -> FloatArray:
-    return shaft_directions(assembled, bearing_places(assembled)[shaft.number])
+def _on_rotor(assembled: Structure, place: int) -> FloatArray:
+    return shaft_directions(assembled, bearing_places(assembled)[place])
 
 
 def _on_base(assembled: Structure) -> FloatArray:
@@ -184,7 +183,7 @@ def _on_base(assembled: Structure) -> FloatArray:
     return np.array([machine.row(Place(BASE), axis) for axis in AXES])
 
 
-def _stand(assembled: Structure, shaft: Side) -> FloatArray:
+def _stand(assembled: Structure, place: int) -> FloatArray:
     """Return where a machine presses: on the base, or on its shaft of a gearbox without one."""
     base = assembled.drivetrain.body.get(BASE)
-    return _on_base(assembled) if base is not None and base.coordinates else _on_rotor(assembled, shaft)
+    return _on_base(assembled) if base is not None and base.coordinates else _on_rotor(assembled, place)

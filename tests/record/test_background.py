@@ -31,6 +31,7 @@ from siggen.sets.drawn import simulated
 from siggen.specimen.background import ChannelWay, SpecimenBackground, specimen_background
 from siggen.specimen.drive import record_rotation
 from siggen.specimen.instrument import Instrument, specimen_instrument
+from tests.config.mill import mill
 from tests.config.minimal import by_name, minimal
 from tests.simulated import label_names, simulate
 from tests.specimen.fixed_numbers import fix
@@ -38,6 +39,7 @@ from tests.specimen.fixed_numbers import fix
 ON_LID = {"name": "lid", "place": "lid", "axes": ["vertical"], "bits": None, "range_m_s2": 1e6}
 LID = {**ON_LID, "place": "casing", "position_mm": [60.0, 50.0]}
 RIGID = {"kind": "rigid"}
+WASHER = {"kind": "bearing_force", "range_n": 1e6, "bits": None}
 PLAIN = {"name": "bearing", "bits": None, "range_m_s2": 1e6}
 ALL: dict[str, Any] = {
     "base": {},
@@ -213,6 +215,34 @@ def test_a_rotor_out_of_balance_shakes_gearbox_and_base_as_one_mass(monkeypatch:
     assert np.hypot(*found[:2]) == pytest.approx(force_n / total_kg, rel=0.03)
     # nothing rings from the cut before the first sample
     assert (signal - lines @ found).std() < 2e-3 * signal.std()
+
+
+def test_machines_stand_at_both_ends_of_three_shafts_and_turn_with_them() -> None:
+    """Far below all modes a bearing carries what presses on its shaft: 41 N of a coupling once a turn of the output."""
+    washers = {f"{at}_washer": {**WASHER, "place": f"{at}_bearing"} for at in ("input", "middle", "output")}
+    sets = [
+        load_config(mill(sensors=washers, background=background, duration_s=1.0))
+        for background in ({"shafts": {"rotor_mass_kg": 0.0}}, None)
+    ]
+    found, clean = (record(one) for one in sets)
+    levels = sets[0].gearbox(0).background
+    assert levels is not None
+    orders = {"input": 1.0, "middle": 18 / 47, "output": 18 / 47 * 17 / 52}
+    angle = 2.0 * np.pi * 30.0 * np.arange(sets[0].samples) / sets[0].fs_hz
+    waves = [f(k * order * angle) for order in orders.values() for k in (1, 2, 3, 4) for f in (np.cos, np.sin)]
+    for at, levelled in {"input": levels.shafts["pinion"], "middle": None, "output": levels.shafts["slow"]}.items():
+        name = f"{at}_washer_vertical"
+        added_n = found.channels[name].astype(float) - clean.channels[name]
+        fit, *_ = np.linalg.lstsq(np.stack(waves, axis=1), added_n, rcond=None)
+        lines = dict(zip(orders, np.hypot(fit[::2], fit[1::2]).reshape(3, 4), strict=True))
+        # resonances lie above 1 kHz: 1 % at 4 x 30 Hz; what rings longer than filters remember is 1 % of 41 N
+        for shaft, amplitudes in lines.items():
+            own = shaft == at and levelled is not None
+            expected = levelled.coupling_n * 10.0 ** (np.array([0.0, *levelled.higher_db]) / 20.0) if own else 0.0
+            np.testing.assert_allclose(amplitudes, expected, rtol=0.02, atol=0.8)
+        assert (added_n - np.stack(waves, axis=1) @ fit).std() < 1e-3
+    told = {name for name in found.labels if name.startswith("coupling_force")}
+    assert told == {"coupling_force_input_n", "coupling_force_output_n"}
 
 
 def test_rubbing_is_roughness_times_stiffness_over_the_averaging_face() -> None:

@@ -50,7 +50,7 @@ def forced_motion(
 
     Parameters
     ----------
-    structure : Structure; one that turns freely has no motion at frequency 0, where all responses are set to 0
+    structure : Structure; one that turns freely has no response at frequency 0
     mesh : MeanMesh, or one for each mesh of the structure
     directions : (inputs, n)
     motions : names of `structure.motions` that are wanted

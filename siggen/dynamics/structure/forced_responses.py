@@ -30,7 +30,7 @@ def forced_responses(
     rows: FloatArray,
     omega_rad_s: FloatArray,
 ) -> ComplexArray:
-    """Return (outputs, inputs, k) of rows (outputs, 3, n): r_0 q + r_1 q̇ + r_2 q̈; 0 at frequency 0.
+    """Return (outputs, inputs, k) of rows (outputs, 3, n): r_0 q + r_1 q̇ + r_2 q̈.
 
     Parameters
     ----------
@@ -45,15 +45,13 @@ def forced_responses(
     for first in range(0, omega_rad_s.size, TOGETHER):
         for lane in range(TOGETHER):
             omega[lane] = omega_rad_s[min(first + lane, omega_rad_s.size - 1)]
-            if omega[lane] == 0.0:
-                omega[lane] = 1.0  # of no use to anybody: the matrix may be singular at 0
         for i in range(n):
             for j in range(n):
                 _dynamic(stiffness[i, j], damping[i, j], mass[i, j], omega, matrices[i, j])
             for j in range(inputs):
                 matrices[i, n + j, 0], matrices[i, n + j, 1] = directions[j, i], 0.0
         _eliminate(matrices, n)
-        _write(rows, omega, matrices, omega_rad_s[first : first + TOGETHER], result[:, :, first : first + TOGETHER])
+        _write(rows, omega, matrices, result[:, :, first : first + TOGETHER])
     return result
 
 
@@ -163,10 +161,8 @@ def _subtract(factor: FloatArray, row: FloatArray, live: NDArray[np.int64], othe
 
 
 @njit(cache=True)
-def _write(
-    rows: FloatArray, omega: FloatArray, solved: FloatArray, omega_rad_s: FloatArray, result: ComplexArray
-) -> None:
-    """Write the outputs (outputs, inputs, k) of solved matrices at frequencies (k,)."""
+def _write(rows: FloatArray, omega: FloatArray, solved: FloatArray, result: ComplexArray) -> None:
+    """Write the outputs (outputs, inputs, k) of solved matrices at the first k of the frequencies."""
     n, weight, columns = rows.shape[2], np.empty((2, TOGETHER)), solved.shape[1]
     total = np.empty((columns, 2, TOGETHER))
     for o in range(rows.shape[0]):
@@ -176,9 +172,8 @@ def _write(
                 _dynamic(rows[o, 0, i], rows[o, 1, i], rows[o, 2, i], omega, weight)
                 _add(weight, solved[i], n, total)
         for j in range(n, columns):
-            for lane in range(omega_rad_s.size):
-                if omega_rad_s[lane] != 0.0:
-                    result[o, j - n, lane] = complex(total[j, 0, lane], total[j, 1, lane])
+            for lane in range(result.shape[2]):
+                result[o, j - n, lane] = complex(total[j, 0, lane], total[j, 1, lane])
 
 
 @njit(cache=True)

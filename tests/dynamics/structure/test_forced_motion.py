@@ -41,16 +41,16 @@ def test_responses_solve_the_equations_of_motion() -> None:
     directions, frequencies = rng.standard_normal((3, len(structure.coordinates))), np.array([0.0, 7.0, 540.0, 9000.0])
     found = forced_motion(structure, mesh, directions, MOTIONS, frequencies)
     p = structure.mesh.vector
-    for k, omega in enumerate(2.0 * np.pi * frequencies[1:], start=1):
+    for k, omega in enumerate(2.0 * np.pi * frequencies):
         dynamic = structure.stiffness + 3e8 * np.outer(p, p) - omega**2 * structure.mass
         dynamic = dynamic + 1j * omega * (structure.damping + 800.0 * np.outer(p, p))
         q = np.linalg.solve(dynamic, directions.T)
         for name in MOTIONS:
-            np.testing.assert_allclose(found.acceleration[name][:, k], -(omega**2) * structure.motions[name] @ q, 1e-7)
+            expected = -(omega**2) * structure.motions[name] @ q
+            np.testing.assert_allclose(found.acceleration[name][:, k], expected, 1e-7)
         for name, (stiff, damped) in structure.bearing_forces.items():
             expected = (stiff + 1j * omega * damped) @ q
             np.testing.assert_allclose(found.bearing_force[name][:, k], expected, rtol=1e-7, atol=1e-9)
-    assert all((response[:, 0] == 0.0).all() for response in found.acceleration.values())
 
 
 def test_readings_of_shafts_take_what_the_rotors_do_not() -> None:
