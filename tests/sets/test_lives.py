@@ -33,8 +33,8 @@ def lives(life: dict[str, Any] | None = None, **changes: Any) -> dict[str, Any]:
 def run(*arguments: str) -> str:
     """Return what a command says."""
     result = CliRunner().invoke(app, arguments)
-    assert result.exit_code == 0, result.output
-    return result.output
+    assert result.exit_code == 0, result.stdout
+    return result.stdout
 
 
 def rows(path: Path) -> list[dict[str, Any]]:
