@@ -139,6 +139,10 @@ class Names:
         """Return what damage and labels call a gear; words such as none stay."""
         return next((gear.word for gear in self.gears if gear.inner == inner), inner)
 
+    def called(self, word: str) -> str:
+        """Return what sentences call a gear by its word; of either gear of a mesh, the one with fewer teeth."""
+        return next((gear.called for gear in self.gears if gear.word == word), "the smaller gear")
+
     @property
     def flanks(self) -> dict[str, tuple[str, str]]:
         """What `gear` of damage may hold: gears, and for each mesh the drawn one of both -> mesh by sections, side."""

@@ -6,7 +6,7 @@ Everything is checked at the bounds of the distributions, so that no specimen ca
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -65,9 +65,8 @@ def _problems(gearbox: PossibleGearbox) -> tuple[Problem, ...]:
     problems: list[Problem] = []
     for mesh in gearbox.meshes:
         problems += [_located(mesh, problem) for problem in mesh.problems]
-        flanks = mesh.flanks
         for path, damage in mesh.damages:
-            problems += _state_problems(flanks, damage, path, through_face=through_face or mesh.internal)
+            problems += _state_problems(mesh, damage, path, through_face=through_face or mesh.internal)
         if gearbox.config.manufacture is not None:
             problems += _outside_tolerances(mesh)
         problems += _coupling_problems(mesh, gearbox)
@@ -123,10 +122,10 @@ def _located(mesh: PossibleMesh, problem: GeometryProblem) -> Problem:
     return Problem(path, received, problem.allowed)
 
 
-def _state_problems(pairs: Sequence[GearPair], damage: Fault, path: str, *, through_face: bool) -> Iterator[Problem]:
+def _state_problems(mesh: PossibleMesh, damage: Fault, path: str, *, through_face: bool) -> Iterator[Problem]:
     """Yield what is wrong with the damage of a state; with `through_face` it may take the whole contact length."""
-    for pair in pairs:
+    for pair in mesh.flanks:
         misplaced = [replace(problem, path=f"{path}.{problem.path}") for problem in damage.place_problems(pair)]
         yield from misplaced
         if not misplaced and not through_face:
-            yield from found_problems(pair, damage.widest(pair), path)
+            yield from found_problems(pair, damage.widest(pair), path, called=[gear.word for gear in mesh.name.gears])

@@ -15,8 +15,9 @@ from pydantic_core import PydanticCustomError
 from siggen.config.short_form import drivetrain
 from siggen.errors import Problem
 from siggen.keys.distributions import DRAWN, Changed
+from siggen.keys.distributions import WORDS as WORDS_OF_NUMBERS
 from siggen.keys.former_keys import former_key
-from siggen.keys.number import Each, Number, Within, at
+from siggen.keys.number import Each, Number, Within, at, each_of
 from siggen.keys.problems import (
     joined,
     nearest,
@@ -39,7 +40,8 @@ WORDS = ("oil",)
 FIXED = ("position_mm", "span_mm", "integration_tolerance", "steps_per_sample")
 """Numbers that say where a channel is or how it is computed."""
 HOW = ("times", "add")
-ALLOWED = "a number, a range such as [1, 2], {times: x} or {add: x}"
+NUMBERS = (float, Each, *DRAWN)
+ALLOWED = "a number, a range such as [1, 2] or {log: [1, 2]}, {times: x} or {add: x}"
 
 
 class Change(Section):
@@ -55,11 +57,13 @@ class Change(Section):
         sign = {"to": "=", "times": "times", "add": "plus"}[self.how]
         return f"{self.path} {sign} {f'{self.value:g}' if isinstance(self.value, float) else self.value}"
 
-    def drawn(self, uniform: Callable[[str], float], state: str) -> Change:
-        """Return it with its own number drawn, by the name of the state and its key."""
+    def drawn(self, uniform: Callable[[str], float], state: str, count: int) -> Change:
+        """Return it with its own number drawn, by the name of the state and its key; one for each of `count` things."""
         if not isinstance(self.value, DRAWN):
             return self
-        return self.model_copy(update={"value": at(self.value, uniform(f"changes.{state}.{self.path}"))})
+        name = f"changes.{state}.{self.path}"
+        each = tuple(at(self.value, uniform(f"{name}.{index}")) for index in range(count))
+        return self.model_copy(update={"value": Each(each=each) if count else at(self.value, uniform(name))})
 
 
 def _parsed(value: object) -> object:
@@ -78,8 +82,8 @@ def _parsed(value: object) -> object:
 
 
 def _change(path: str, given: object) -> Change:
-    if isinstance(given, Mapping) and any(key in HOW for key in given):
-        if len(given) != 1:
+    if isinstance(given, Mapping) and not any(key in WORDS_OF_NUMBERS for key in given):
+        if len(given) != 1 or next(iter(given)) not in HOW:
             raise refusal([Problem("", received_text(given), f"allowed: {ALLOWED}")])
         how = next(iter(given))
         return Change(path=path, how=how, value=Within().parse(given[how]))
@@ -141,8 +145,10 @@ def _replaced(value: Any, parts: Sequence[str], change: Change) -> Any:
     """Return a section, or a list of them, with the key at a path below it changed."""
     if isinstance(value, (tuple, Mapping)):
         return _in_list(value, parts, change)
-    if not isinstance(value, Section):
-        raise _refused(change, "allowed: keys of sections that the file has; this one is null")
+    if not isinstance(value, Section) or isinstance(value, NUMBERS):
+        above = change.path.removesuffix("." + ".".join(parts))
+        held = {type(None): "null", str: "a word"}.get(type(value), "a number, changed as a whole")
+        raise _refused(change, f"allowed: keys of sections that the file has; {above} is {held}")
     name, *below = parts
     fields = type(value).model_fields
     if name not in keys_of(type(value)):
@@ -160,8 +166,11 @@ def _replaced(value: Any, parts: Sequence[str], change: Change) -> Any:
 def _in_list(entries: Any, parts: Sequence[str], change: Change) -> Any:
     """Return sensors or shafts of which that of a name is changed."""
     named = dict(entries) if isinstance(entries, Mapping) else {one.name: one for one in entries}
-    if parts[0] not in named or len(parts) == 1:
+    if parts[0] not in named:
         raise _refused(change, f"allowed: a key of one of {', '.join(named)}{nearest(parts[0], [*named])}")
+    if len(parts) == 1:
+        keys = ", ".join(keys_of(type(named[parts[0]])))
+        raise _refused(change, f"allowed: a key below {change.path}: {keys}")
     named[parts[0]] = _replaced(named[parts[0]], parts[1:], change)
     return named if isinstance(entries, Mapping) else tuple(named.values())
 
@@ -176,17 +185,35 @@ def _leaf(section: Section, name: str, own: Any, change: Change) -> Any:
         raise _refused(change, "allowed: keys with numbers of the machine or of a sensor, and dynamics.friction.oil")
     if change.how == "to":
         return change.value
-    if isinstance(own, Each):
-        return own.model_copy(update={"each": tuple(_number(one, change) for one in own.each)})
-    if not isinstance(own, (float, *DRAWN)):
+    if not isinstance(own, NUMBERS):
         raise _refused(change, f"allowed: a number or a range in its place, since the key is {received_text(own)}")
-    return _number(own, change)
+    for several in (own, change.value):
+        if isinstance(several, Each):
+            pairs = zip(each_of(own, len(several.each)), each_of(change.value, len(several.each)), strict=True)
+            return several.model_copy(update={"each": tuple(_number(*pair, change.how) for pair in pairs)})
+    return _number(own, change.value, change.how)
 
 
-def _number(own: Any, change: Change) -> Number:
-    if isinstance(own, float) and isinstance(change.value, float):
-        return own * change.value if change.how == "times" else own + change.value
-    return Changed(own, times=change.value) if change.how == "times" else Changed(own, add=change.value)
+def _number(own: Any, value: Any, how: str) -> Number:
+    if isinstance(own, float) and isinstance(value, float):
+        return own * value if how == "times" else own + value
+    return Changed(own, times=value) if how == "times" else Changed(own, add=value)
+
+
+def drawn_changes(
+    sections: Mapping[str, Any], changes: Sequence[tuple[Change, Callable[[str], float], str]]
+) -> list[Change]:
+    """Return valid changes, each with its uniforms and the name of its state, as a gearbox has them."""
+    return [one.drawn(uniform, state, _count(sections, one.path.split("."))) for one, uniform, state in changes]
+
+
+def _count(value: Any, parts: Sequence[str]) -> int:
+    """Return how many numbers of one law a key holds, such as those of both directions; 0 for a single one."""
+    name, *below = parts
+    if not below:
+        return max((one.count for one in type(value).model_fields[name].metadata if isinstance(one, Within)), default=0)
+    listed = {one.name: one for one in value} if isinstance(value, tuple) else value
+    return _count(listed[name] if isinstance(listed, Mapping) else getattr(listed, name), below)
 
 
 def _refused(change: Change, allowed: str, received: str = "") -> PydanticCustomError:

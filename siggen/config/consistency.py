@@ -313,9 +313,10 @@ def _tooth_indices(sections: Mapping[str, Any], _: Mapping[str, object]) -> Iter
             (mesh, role), selected = names.flanks[gear], most_teeth(teeth)
             ring = sections["planetary"].ring_teeth if of_set and mesh else None
             count = min(pair_of(sections, mesh).teeth_of(role)) if ring is None else ring
+            called = names.called(gear)
             if isinstance(selected, int):
                 if selected > count:
-                    yield Problem(path, repr(selected), f"allowed: at most {count}, the teeth of the {gear}")
+                    yield Problem(path, repr(selected), f"allowed: at most {count}, the teeth of {called}")
                 continue
-            allowed = f"allowed: an index from 0 to {count - 1}, the {gear} has {count} teeth"
+            allowed = f"allowed: an index from 0 to {count - 1}, {called} has {count} teeth"
             yield from (Problem(path, f"tooth {tooth}", allowed) for tooth in selected if tooth >= count)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import yaml
 
@@ -14,6 +14,8 @@ from siggen.keys.merging import REPLACING
 from siggen.keys.yaml_source import yaml_node
 
 MERGE = "tag:yaml.org,2002:merge"
+Roots: TypeAlias = Sequence[tuple[str, yaml.Node | None]]
+"""Names and contents of the files."""
 MOST_MERGES = 20
 """Merged mappings within each other that are followed; a mapping may merge itself."""
 
@@ -78,11 +80,30 @@ def placed(problems: Iterable[Problem], files: Sequence[Path] = (), overrides: S
     return [one if one.where else replace(one, where=_where(one.path, roots, overrides)) for one in problems]
 
 
-def _where(path: str, roots: Sequence[tuple[str, yaml.Node | None]], overrides: Sequence[str]) -> str:
-    for override in reversed(overrides):
-        key = override.partition("=")[0].strip()
-        if path == key or path.startswith(f"{key}."):
+def _where(path: str, roots: Roots, overrides: Sequence[str]) -> str:
+    keys = [override.partition("=")[0].strip() for override in reversed(overrides)]
+    for own in _taken_from(path, roots):
+        if (key := next((key for key in keys if f"{own}.".startswith(f"{key}.")), None)) is not None:
             return f"--set {key}"
+    section = path.rpartition(".")[0] or path  # what goes with a key may be wrong instead
+    beside = [f"--set {key}" for key in keys if key.startswith((f"{section}.", f"{path}."))]
+    return ", beside ".join([*filter(None, [_line(path, roots)]), *beside[:1]])
+
+
+def _taken_from(path: str, roots: Roots) -> Iterator[str]:
+    """Yield where a key may be written: its path, then those of the states whose keys it takes over."""
+    parts = path.split(".")
+    for _ in range(MOST_MERGES):
+        yield ".".join(parts)
+        written = (_key_line(root, parts) for _, root in roots)
+        named = (_named_state(root, parts[1:2]) for _, root in roots)
+        further = next(filter(None, named), None) if parts[0] == "states" else None
+        if further is None or any(one is not None and one.depth == len(parts) for one in written):
+            return
+        parts[1] = further
+
+
+def _line(path: str, roots: Roots) -> str:
     best: KeyLine | None = None
     file = ""
     for name, root in roots:

@@ -11,7 +11,7 @@ from siggen.config.short_form import names_in, stages_of
 from siggen.config.stages import OF_BOTH_MESHES, Stage, turned_teeth
 from siggen.errors import Problem
 from siggen.keys.number import bounds
-from siggen.keys.problems import joined, nearest
+from siggen.keys.problems import MISSING, joined, nearest
 from siggen.names import EITHER, Names
 
 
@@ -121,11 +121,22 @@ def _named(sections: Mapping[str, Any], names: Names) -> Iterator[Problem]:
             known = [word for word, (_, role) in names.flanks.items() if not several or role != EITHER]
             unknown = [(key, gear) for key, gear in hit.items() if gear not in known]
             for key, gear in unknown:
-                allowed = f"allowed: one of {', '.join(known)}{nearest(gear, known)}"
-                yield Problem(f"{where}.{key}", f"'{gear}'", allowed)
+                allowed = f"allowed: one of {', '.join(known)}"
+                if _is_written(one, key):
+                    yield Problem(f"{where}.{key}", f"'{gear}'", f"{allowed}{nearest(gear, known)}")
+                else:
+                    yield Problem(f"{where}.{key}", MISSING, f"this key is needed where gears have names; {allowed}")
             if one.needs_bearings and one.position not in (seats := [shaft.bearing for shaft in names.shafts[:2]]):
                 allowed = f"allowed: one of {', '.join(seats)}{nearest(one.position, seats)}"
                 yield Problem(f"{where}.bearing", f"'{one.position}'", allowed)
             if not unknown and len({names.flanks[gear][0] for gear in hit.values()}) > 1:
                 allowed = "allowed: gears of one mesh; those of further meshes in a list of damages"
                 yield Problem(f"{where}.pits", ", ".join(hit.values()), allowed)
+
+
+def _is_written(section: Any, key: str) -> bool:
+    """Return whether a key below a section was given, not filled in."""
+    *above, last = key.split(".")
+    for part in above:
+        section = section[int(part)] if part.isdecimal() else getattr(section, part)
+    return last in section.model_fields_set

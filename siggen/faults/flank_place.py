@@ -140,11 +140,13 @@ def axial_heights_m(gear: SpurGear, values_m: FloatArray, reading: str) -> Float
     return np.where(values_m < 0.0, below, gear.height_m(roll) + beyond)
 
 
-def found_problems(pair: GearPair, damage: Damage, path: str, remark: str = "") -> list[Problem]:
-    """Return what is wrong with a damage as problems of one key."""
+def found_problems(
+    pair: GearPair, damage: Damage, path: str, remark: str = "", called: Sequence[str] = SECTIONS
+) -> list[Problem]:
+    """Return what is wrong with a damage as problems of one key; `called`: both gears in sentences."""
     return [
         Problem(path, f"{remark}{problem.received}", f"allowed: {problem.allowed}{GO_ON.get(problem.name, '')}")
-        for problem in damage_problems(pair, damage)
+        for problem in damage_problems(pair, damage, called)
     ]
 
 

@@ -259,9 +259,17 @@ def _edge_problems(pair: GearPair, size: IrregularSpalls, width_mm: float) -> It
     apart = most - least
     room = 2.0 * shortest * (1.0 - 2.0 * waves) / (PER_10MM * across_mm)
     if apart >= room:
-        received = f"{number_text(size.skew_mm_per_10mm)}: the edges of {shortest:.6g} mm cross"
-        allowed = f"allowed: a range of less than {room:.6g} mm per 10 mm, at {across_mm:.6g} mm across the face"
-        yield Problem("skew_mm_per_10mm", received, allowed)
+        key, skew, at_face = "skew_mm_per_10mm", number_text(size.skew_mm_per_10mm), f"{across_mm:.6g} mm of face"
+        received, narrower = (
+            f"{skew}: the edges of {shortest:.6g} mm cross",
+            f"a range of less than {room:.6g} mm per 10 mm",
+        )
+        if key in size.model_fields_set:
+            yield Problem(key, received, f"allowed: {narrower}, over {at_face}")
+        else:  # the default, which nobody wrote
+            received = f"{number_text(size.profile_length_mm)} mm: over {at_face} its edges, with {key} {skew}, cross"
+            allowed = f"allowed: above {shortest * apart / room:.6g} mm, or {key} with {narrower}"
+            yield Problem("profile_length_mm", received, allowed)
         return
     reach = 0.5 * PER_10MM * across_mm * max(abs(least), abs(most)) + waves * longest
     yield from _height_problems(pair, size, MM * (0.5 * longest + reach))
@@ -295,7 +303,7 @@ def _height_problems(pair: GearPair, size: IrregularSpalls, reach_m: float) -> I
 
 def _depth_problem(size: IrregularSpalls, received: str, allowed: str) -> Problem:
     if size.depth_mm is not None:
-        return Problem("depth_mm", received, allowed)
+        return Problem("depth_mm", f"{number_text(size.depth_mm)} mm: its rough floor reaches {received}", allowed)
     follows = f"a depth of {received} follows from profile and face length ({DEPTH_SHARE:g} of the root of both)"
     return Problem("profile_length_mm", f"{number_text(size.profile_length_mm)} mm: {follows}", f"depth {allowed}")
 

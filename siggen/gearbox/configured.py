@@ -12,7 +12,7 @@ from functools import lru_cache
 from typing import Any
 
 from siggen.config import Config, StateSection
-from siggen.config.changes import changed_sections
+from siggen.config.changes import changed_sections, drawn_changes
 from siggen.config.oil import oils_of
 from siggen.faults.fault import Fault
 from siggen.gearbox.lived import Lived, lived, lived_states
@@ -148,11 +148,12 @@ def state_config(config: Config, specimen_id: int, state_id: int) -> Config:
     changes = own.changes_of(state_id)
     if not changes:
         return own
-    drawn = [
-        one.drawn(named_uniforms(own.seed, Stream.DAMAGE, specimen_id, origin), own.states[origin].name)
-        for origin, one in changes
-    ]
     sections = {name: getattr(own, name) for name in type(own).model_fields}
+    of_states = {
+        origin: (named_uniforms(own.seed, Stream.DAMAGE, specimen_id, origin), own.states[origin].name)
+        for origin, _ in changes
+    }
+    drawn = drawn_changes(sections, [(one, *of_states[origin]) for origin, one in changes])
     # the converter is that of all states, whatever becomes of the noise: its step must not tell the state
     sections["sensors"] = tuple(one.model_copy(update={"bits": one.converter_bits}) for one in own.sensors)
     states = tuple(state.model_copy(update={"changes": ()}) for state in own.states)

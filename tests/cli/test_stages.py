@@ -51,6 +51,44 @@ def rows(made: Path, table: str) -> list[dict[str, Any]]:
     return [row for file in sorted((made / table).iterdir()) for row in pq.read_table(file).to_pylist()]
 
 
+HOIST = """
+extends: quickstart
+machine:
+  shafts: {input: {}, output: {}}
+  gears:
+    ann: {teeth: 18, bore_radius_mm: 12, shaft: input}
+    bob: {teeth: 47, bore_radius_mm: 15, shaft: output}
+  meshes: {fast: {driver: ann, driven: bob, module_mm: 2, face_width_mm: 20}}
+dynamics: {shafts: null, mesh: {law: linear}}
+manufacture: null
+background: null
+housing: {kind: rigid, mass_kg: 60}
+sensors: {others: null, end: {place: output_bearing}}
+states:
+  others: null
+  healthy: {}
+  wide: {damage: {kind: spall, gear: bob, face_length_mm: 40, profile_length_mm: 2, depth_mm: 0.2}}
+  index: {damage: {kind: crack, gear: ann, teeth: [60], depth_share: 0.2}}
+  bare: {damage: {kind: crack, depth_share: 0.2}}
+  short: {damage: {kind: irregular, gear: ann, face_share: 1.0, profile_length_mm: 0.2}}
+"""
+"""One mesh under the linear law, with a mistake in every state."""
+
+
+def test_damage_is_refused_in_the_words_of_its_file(tmp_path: Path) -> None:
+    (tmp_path / "hoist.yaml").write_text(HOIST)
+    done = run("plan", str(tmp_path / "hoist.yaml"), "--trial", "0")
+    assert done.returncode == 2
+    for told in (
+        "states.wide.damage: received spalls of bob tooth 0 that take the whole contact length",
+        "states.index.damage.teeth: received tooth 60; allowed: an index from 0 to 17, ann has 18 teeth",
+        "states.bare.damage.gear: received nothing; this key is needed where gears have names; allowed: one of",
+        "states.short.damage.profile_length_mm: received 0.2 mm: over 20 mm of face its edges, with skew_mm_per_10mm",
+    ):
+        assert told in done.stderr
+    assert "pinion" not in done.stderr
+
+
 def test_channels_at_the_third_shaft_are_called_by_quantity_sensor_axis_and_unit(made: Path) -> None:
     table = pq.read_table(made / "data")
     facts = {name: table.schema.field(name).metadata for name in table.column_names}

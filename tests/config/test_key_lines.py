@@ -96,3 +96,21 @@ def test_a_value_from_an_override_names_the_override_and_not_the_file() -> None:
         load_config(BENCH, ["gears.module_mm=4", "gears.module_mm=-3"])
     with pytest.raises(ConfigError, match=r"gears.pinion.teeth: received .* \(--set gears.pinion\)"):
         load_config(BENCH, ["gears.pinion={teeth: 1, bore_radius_mm: 5}"])
+
+
+def test_a_value_that_a_state_takes_over_from_an_override_names_the_override() -> None:
+    with pytest.raises(ConfigError) as refused:
+        load_config("quickstart", ["states.slight.damage.depth_mm=9"])
+    found = {one.path: one.where for one in refused.value.problems}
+    assert {*found} == {f"states.{state}.damage.depth_mm" for state in ("slight", "moderate", "severe", "sham")}
+    assert {*found.values()} == {"--set states.slight.damage.depth_mm"}
+    # a key of its own in the file goes first
+    with pytest.raises(ConfigError, match=r"states.severe.damage.face_share: .* \(line \d+\)"):
+        load_config("quickstart", ["states.slight.damage.face_centre_mm=12"])
+
+
+def test_a_line_beside_which_an_override_changed_something_names_both() -> None:
+    with pytest.raises(
+        ConfigError, match=r"planetary.positions_deg: .* \(line \d+, beside --set planetary.ring_teeth\)"
+    ):
+        load_config("planetary", ["planetary.ring_teeth=78"])

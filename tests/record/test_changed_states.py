@@ -90,6 +90,18 @@ def test_a_drawn_change_belongs_to_gearbox_and_state_and_stays_while_it_grows() 
     ]
 
 
+def test_each_direction_of_a_bearing_draws_its_own_change() -> None:
+    soft = "dynamics.pinion.bearing.stiffness_n_per_m"
+    own = {"dynamics": {"model": "8dof", "pinion": {"bearing": {"stiffness_n_per_m": {"each": [1e8, 2e8]}}}}}
+    for change, healthy in (({"times": [0.2, 0.8]}, (1e8, 2e8)), ([2e7, 8e7], (1e8, 1e8))):
+        chosen = config(changed({soft: change}), **own)
+        bearing = SetDesign(state_config(chosen.config, 0, 1)).gearbox(0).train.first.pinion.bearing  # type: ignore[union-attr]
+        found = bearing.stiffness_x_n_per_m, bearing.stiffness_y_n_per_m
+        shares = [one / whole for one, whole in zip(found, healthy, strict=True)]
+        assert shares[0] != shares[1]
+        assert all(0.2 <= share <= 0.8 for share in shares)
+
+
 def test_a_sensors_fault_is_in_its_channel_alone() -> None:
     found = record(config(changed({"sensors.bearing.gain": {"times": 0.5}}, fault="sensor")), 1)
     same = record(config({"name": "again"}), 1)
@@ -124,7 +136,10 @@ def test_a_state_at_the_end_moves_no_other() -> None:
         ("dynamics.backlash_um", {"times": 2, "add": 1}, "{add: x}"),
         ("dynamics.backlash_um", None, "{add: x}"),
         ("variation.speed.random_rms", 0.001, "leaves the columns"),
-        ("manufacture.accuracy_class", 5, "this one is null"),
+        ("manufacture.accuracy_class", 5, "manufacture is null"),
+        ("dynamics.backlash_um", {"plus": 1}, "received a mapping with plus; allowed: a number, a range such as"),
+        ("dynamics.pinion.bearing.stiffness_n_per_m.0", {"times": 0.5}, "stiffness_n_per_m is a number, changed as a"),
+        ("sensors.bearing", 2, "a key below sensors.bearing: kind, place"),
     ],
 )
 def test_what_may_not_change_is_refused_by_its_key(path: str, change: object, said: str) -> None:

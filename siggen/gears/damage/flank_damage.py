@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from math import gcd
 
@@ -16,7 +16,7 @@ from siggen.gears.damage.row_columns import COLUMNS, FACE
 from siggen.gears.damage.tooth_damage import Damage, DamageProblem, ToothDamage, damaged_teeth, pits_of
 from siggen.gears.damage.whole_loss import takes_whole_contact
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.names import Side
+from siggen.names import SECTIONS, Side
 
 
 def pit_rows(pits: Iterable[ToothDamage]) -> FloatArray:
@@ -44,14 +44,17 @@ def _rows_of(pits: Damage) -> FloatArray:
     return rows[~hidden_rows(rows)] if len(rows) > 1 else rows
 
 
-def damage_problems(pair: GearPair, damage: Iterable[ToothDamage]) -> tuple[DamageProblem, ...]:
+def damage_problems(
+    pair: GearPair, damage: Iterable[ToothDamage], called: Sequence[str] = SECTIONS
+) -> tuple[DamageProblem, ...]:
     """Return everything that makes a damage impossible on a pair without geometry problems; empty for a possible one.
 
     Every damage says itself what is wrong with it and its place. No contact may lose its whole length, neither by one
-    flank nor by two mating ones together; that is looked for only when every damage is possible by itself.
+    flank nor by two mating ones together; that is looked for only when every damage is possible by itself. `called`:
+    both gears in sentences.
     """
     damage = tuple(damage)
-    return single_problems(pair, damage) or tuple(_contact_problems(pair, damage))
+    return single_problems(pair, damage) or tuple(_contact_problems(pair, damage, called))
 
 
 def single_problems(pair: GearPair, damage: Iterable[ToothDamage]) -> tuple[DamageProblem, ...]:
@@ -68,11 +71,12 @@ def _located(index: int, damage: ToothDamage, refusals: Iterable[Refusal]) -> It
         yield DamageProblem(index, received, allowed, damage.kind, name)
 
 
-def _contact_problems(pair: GearPair, damage: Damage) -> Iterator[DamageProblem]:
+def _contact_problems(pair: GearPair, damage: Damage, called: Sequence[str]) -> Iterator[DamageProblem]:
     for side, tooth, mate in lost_contacts(pair, damage):
         index, pit = next((i, pit) for i, pit in enumerate(damage) if pit.gear == side and pit.tooth == tooth)
-        together = "" if mate is None else f" together with gear tooth {mate}"
-        received = f"{_kinds(damage, side, tooth)} of {side} tooth {tooth}{together} that take the whole contact length"
+        together = "" if mate is None else f" together with {called[side.mate.number]} tooth {mate}"
+        flank = f"{called[side.number]} tooth {tooth}{together}"
+        received = f"{_kinds(damage, side, tooth)} of {flank} that take the whole contact length"
         allowed = f"a loss below the face width {mm(pair.face_width_m)} everywhere"
         yield DamageProblem(index, received, allowed, pit.kind, "contact")
 
