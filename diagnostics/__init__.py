@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from diagnostics.scoring.benchmark_scores import score_benchmark
     from diagnostics.scoring.score import score
     from diagnostics.training.average_rows import averages
-    from diagnostics.training.estimators import BoostingBaseline, LogisticBaseline
+    from diagnostics.training.classifiers import BoostingBaseline, LogisticBaseline
 
 __all__ = [
     "BoostingBaseline",
@@ -35,8 +35,8 @@ _HOMES = {
     "table": "diagnostics.indicators.classifier_table",
     "averages": "diagnostics.training.average_rows",
     "windows": "diagnostics.loader.window_arrays",
-    "LogisticBaseline": "diagnostics.training.estimators",
-    "BoostingBaseline": "diagnostics.training.estimators",
+    "LogisticBaseline": "diagnostics.training.classifiers",
+    "BoostingBaseline": "diagnostics.training.classifiers",
 }
 
 

@@ -24,7 +24,6 @@ from diagnostics.audit.best_indicator import best_indicators
 from diagnostics.audit.condition_traps import level_attackers
 from diagnostics.audit.detectability import TARGETS, Detectability, detections, features, length_at, waveform_change
 from diagnostics.audit.envelope import BENCH, QuantityShare, Realism, realism
-from diagnostics.audit.held_out import Attacker
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from diagnostics.audit.reference_comparison import reference_comparison, reference_windows, synthetic_windows
 from diagnostics.audit.separability_findings import separability_findings, verdict
@@ -34,6 +33,7 @@ from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.own_indicator import OwnIndicator
+from diagnostics.judging.evaluation import Entry
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.records.recording import names_of
 from siggen.dataset.reading import Dataset
@@ -253,7 +253,7 @@ def _attacks(
     return found, chance, shams_found(measured, sham_sides(measured, bank), seed)
 
 
-def sham_sides(measured: MeasuredSet, bank: list[Attacker]) -> dict[str, list[Attacker]]:
+def sham_sides(measured: MeasuredSet, bank: list[Entry]) -> dict[str, list[Entry]]:
     """Return who is asked about shams, by what they see: a bank of attackers on signals, and those on raw levels."""
     return {
         side: [

@@ -20,13 +20,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from diagnostics.audit.detectability import TARGETS, Detectability, damage_sizes, in_order
-from diagnostics.audit.held_out import Attacker, dealt_folds, held_out, held_out_values, judged_rows
 from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks
 from diagnostics.audit.simple_thresholds import LARGEST_AUC
 from diagnostics.base.seeding import Purpose, generator
+from diagnostics.judging.evaluation import Design, Entry, held_out, held_out_values, judged_rows
 from diagnostics.records.state_classes import damage_kind
 from diagnostics.statistics.evaluation import Interval
 
+DESIGN = Design(folds=4, owner=1000, deals=3, fewest=2)
 PERMUTATIONS = 499
 LEVEL = 0.95
 OWNER = 1000
@@ -86,13 +87,13 @@ def _exchanged(positive: np.ndarray, groups: np.ndarray, keys: np.ndarray) -> np
 
 
 def bank_maxima(
-    attackers: Sequence[Attacker], rows: np.ndarray, states: np.ndarray, specimen: np.ndarray, folds: np.ndarray
+    attackers: Sequence[Entry], rows: np.ndarray, states: np.ndarray, specimen: np.ndarray, folds: np.ndarray
 ) -> np.ndarray:
     """Return the largest AUC over the attackers for every way of stating the damaged records, (turns,).
 
     Parameters
     ----------
-    attackers : sequence of Attacker
+    attackers : sequence of Entry
         Every one is asked about the rows that it can use.
     rows : (n,) int
         Records of the set.
@@ -100,7 +101,7 @@ def bank_maxima(
         As of `permuted`.
     specimen : (n,) int
     folds : (deals, n) int
-        As of `diagnostics.audit.held_out.dealt_folds`.
+        As of `Design.dealt`.
 
     Returns
     -------
@@ -189,7 +190,7 @@ def damaged_states(measured: MeasuredSet) -> tuple[str, ...]:
 
 
 def bank_detections(
-    measured: MeasuredSet, attackers: Sequence[Attacker], seed: int, advance: Callable[[], None]
+    measured: MeasuredSet, attackers: Sequence[Entry], seed: int, advance: Callable[[], None]
 ) -> dict[str, list[Detectability]]:
     """Return the detection of every state by every attacker that could be asked, by its name.
 
@@ -197,13 +198,13 @@ def bank_detections(
     ----------
     measured : MeasuredSet
         The set.
-    attackers : sequence of Attacker
+    attackers : sequence of Entry
     seed : int
         Of folds and resampled gearboxes.
     advance : callable
         Called after every attacker.
     """
-    folds = dealt_folds(measured.labels["specimen_id"], seed)
+    folds = DESIGN.dealt(measured.labels["specimen_id"], seed)
     found = {}
     for attacker in attackers:
         entries = [detection_by(measured, attacker, state, folds, seed) for state in damaged_states(measured)]
@@ -213,8 +214,8 @@ def bank_detections(
     return found
 
 
-def detection_by(measured: MeasuredSet, attacker: Attacker, state: str, folds: np.ndarray, seed: int) -> Detectability:
-    """Return the detection of one state by one attacker; folds as of `dealt_folds`."""
+def detection_by(measured: MeasuredSet, attacker: Entry, state: str, folds: np.ndarray, seed: int) -> Detectability:
+    """Return the detection of one state by one attacker; folds as of `Design.dealt`."""
     labels = measured.labels
     of_state = np.asarray(labels["state"] == state) & ~measured.healthy
     rows = judged_rows(attacker, measured.healthy, of_state, labels["specimen_id"])
@@ -226,7 +227,7 @@ def detection_by(measured: MeasuredSet, attacker: Attacker, state: str, folds: n
 
 
 def chance_limit(
-    measured: MeasuredSet, attackers: Sequence[Attacker], seed: int, advance: Callable[[], None]
+    measured: MeasuredSet, attackers: Sequence[Entry], seed: int, advance: Callable[[], None]
 ) -> ChanceLimit:
     """Return what the strongest attacker reaches by chance, state by state, each on its own records.
 
@@ -237,8 +238,8 @@ def chance_limit(
     advance : callable
         Called after every state.
     """
-    asked = [attacker for attacker in attackers if attacker.permutable]
-    folds, blocks = dealt_folds(measured.labels["specimen_id"], seed), exchange_blocks(measured)
+    asked = [attacker for attacker in attackers if attacker.many]
+    folds, blocks = DESIGN.dealt(measured.labels["specimen_id"], seed), exchange_blocks(measured)
     found = {}
     for state in damaged_states(measured):
         law = state_chance(measured, asked, state, folds, blocks, seed)
@@ -250,7 +251,7 @@ def chance_limit(
 
 
 def state_chance(
-    measured: MeasuredSet, asked: Sequence[Attacker], state: str, folds: np.ndarray, blocks: np.ndarray, seed: int
+    measured: MeasuredSet, asked: Sequence[Entry], state: str, folds: np.ndarray, blocks: np.ndarray, seed: int
 ) -> StateChance | None:
     """Return what the strongest of some attackers reaches on a state by chance; None where none could be asked."""
     specimen, of_state = measured.labels["specimen_id"], np.asarray(measured.labels["state"] == state)

@@ -17,9 +17,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnostics.audit.audit import REFERENCED
-from diagnostics.audit.bank_detections import bank_maxima, damaged_states, permuted
+from diagnostics.audit.bank_detections import DESIGN, bank_maxima, damaged_states, permuted
 from diagnostics.audit.channel_lags import LAGS, lag_columns
-from diagnostics.audit.column_attackers import all_columns, best_column
 from diagnostics.audit.condition_layers import (
     BYTE,
     CHANNELS,
@@ -32,12 +31,13 @@ from diagnostics.audit.condition_layers import (
     filled_columns,
 )
 from diagnostics.audit.finding import Finding
-from diagnostics.audit.held_out import Attacker, HeldOut, dealt_folds, held_out, judged_rows
 from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks, reference_records
 from diagnostics.audit.raw_columns import CLOCK, EDGES, ENDS, LINES, OFFSETS, STORED
 from diagnostics.audit.small_damage import LEVELS, small_damage_attackers
 from diagnostics.audit.state_ties import unchanged
 from diagnostics.audit.time_templates import TEMPLATES, template_attackers
+from diagnostics.judging.evaluation import Entry, HeldOut, held_out, judged_rows
+from diagnostics.judging.learners import all_columns, best_column
 
 OF_TEETH = frozenset({NOISE, CHANNELS, ENDS, LINES, LAGS, LEVELS})
 """Layers that single damaged teeth cannot move, and other faults can."""
@@ -68,12 +68,12 @@ MENDS = {
 """How each layer is mended."""
 
 
-def condition_attackers(measured: MeasuredSet) -> dict[str, list[Attacker]]:
+def condition_attackers(measured: MeasuredSet) -> dict[str, list[Entry]]:
     """Return the attackers of every layer."""
     reference = reference_records(measured)
     has_reference = bool((reference >= 0).any())
     changes = condition_changes(measured, reference) if has_reference else {}
-    found: dict[str, list[Attacker]] = {}
+    found: dict[str, list[Entry]] = {}
     for layer, (values, names) in condition_layers(measured).items():
         if values.shape[1]:
             filled = filled_columns(values)
@@ -108,7 +108,7 @@ def of_single_teeth(measured: MeasuredSet) -> np.ndarray:
     return np.asarray(listed & unchanged(measured))
 
 
-def level_attackers(measured: MeasuredSet, *, referenced: bool) -> list[Attacker]:
+def level_attackers(measured: MeasuredSet, *, referenced: bool) -> list[Entry]:
     """Return the attackers that see raw levels, or their change from a healthy record; damage moves them too."""
     if not measured.raw.levels:
         return []
@@ -125,7 +125,7 @@ class Strongest:
     """The strongest attacker of a layer, the state that it tells best, and what it reaches there."""
 
     layer: str
-    attacker: Attacker
+    attacker: Entry
     state: str
     found: HeldOut
 
@@ -143,10 +143,10 @@ def condition_traps(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
     return [_finding(entry, len(asked), limits[entry.state]) for entry in accused]
 
 
-def _judged(measured: MeasuredSet, bank: dict[str, list[Attacker]], seed: int) -> Iterator[list[Strongest]]:
+def _judged(measured: MeasuredSet, bank: dict[str, list[Entry]], seed: int) -> Iterator[list[Strongest]]:
     """Yield, layer by layer, what every attacker reaches for every state."""
     specimen = measured.labels["specimen_id"]
-    folds = dealt_folds(specimen, seed)
+    folds = DESIGN.dealt(specimen, seed)
     for layer, attackers in bank.items():
         entries = []
         for state in damaged_states(measured):
@@ -164,13 +164,13 @@ def _largest(entries: list[Strongest]) -> Strongest | None:
     return max(defined, key=lambda entry: entry.found.auc.value, default=None)
 
 
-def chance_largest(measured: MeasuredSet, attackers: list[Attacker], state: str, seed: int) -> float:
+def chance_largest(measured: MeasuredSet, attackers: list[Entry], state: str, seed: int) -> float:
     """Return the largest AUC over attackers and permutations of healthy records and those of one state.
 
     Parameters
     ----------
     measured : MeasuredSet
-    attackers : list of Attacker
+    attackers : list of Entry
     state : str
     seed : int
     """
@@ -179,7 +179,7 @@ def chance_largest(measured: MeasuredSet, attackers: list[Attacker], state: str,
     rows = np.flatnonzero(measured.healthy | of_state)
     turns = PERMUTATIONS * len(damaged_states(measured))
     ways = permuted(~measured.healthy[rows], exchange_blocks(measured)[rows], specimen[rows], seed, turns)
-    maxima = bank_maxima(able, rows, ways, specimen[rows], dealt_folds(specimen, seed)[:, rows])
+    maxima = bank_maxima(able, rows, ways, specimen[rows], DESIGN.dealt(specimen, seed)[:, rows])
     return float(np.max(maxima, where=np.isfinite(maxima), initial=0.0))
 
 

@@ -16,12 +16,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from diagnostics.audit.column_attackers import products, ridge_scores
-from diagnostics.audit.held_out import dealt_folds, wins
+from diagnostics.audit.bank_detections import DESIGN
+from diagnostics.judging.evaluation import Entry, held_out_values
+from diagnostics.judging.learners import GroupRidge, products
 from diagnostics.recordings.file_columns import READERS
 from diagnostics.recordings.taken import RecordingFacts, channel_columns, say_taken, take
 from diagnostics.signal.window_features import FEATURES, signal_windows, window_features
@@ -289,13 +291,8 @@ def discriminator_auc(measured: WindowSet, synthetic: WindowSet, seed: int) -> f
     values = np.concatenate([real, own])
     is_real = np.arange(len(values)) < len(real)
     source = np.unique(np.concatenate([np.char.add("r", owner), np.char.add("g", gearbox)]), return_inverse=True)[1]
-    product = products(values)
-    total = np.zeros((2, 1))
     # recordings and gearboxes are dealt apart, so that every fold holds both
-    folds = np.concatenate([dealt_folds(source[is_real], seed), dealt_folds(source[~is_real], seed)], axis=1)
-    for fold in folds:
-        for held in np.unique(fold[is_real]):
-            out = fold == held
-            score = ridge_scores(product, is_real[None], source, ~out)[0]
-            total += wins(score, is_real[out], source[out], np.ones((1, int(out.sum()))))
-    return float(total[0, 0] / total[1, 0]) if total[1, 0] > 0.0 else float("nan")
+    folds = np.concatenate([DESIGN.dealt(source[side], seed) for side in (is_real, ~is_real)], axis=1)
+    places = np.arange(len(values))
+    entry = Entry("all features", partial(GroupRidge, products(values)), places, np.ones(len(values), dtype=bool))
+    return float(held_out_values(entry, places, is_real[None], source, folds)[0])

@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.audit.bank_detections import PERMUTATIONS, StateChance, detection_by, state_chance
+from diagnostics.audit.bank_detections import DESIGN, PERMUTATIONS, StateChance, detection_by, state_chance
 from diagnostics.audit.finding import Finding
-from diagnostics.audit.held_out import Attacker, dealt_folds
 from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks
+from diagnostics.judging.evaluation import Entry
 from diagnostics.page.wording import decimal, limits
 from diagnostics.records.state_classes import HEALTHY, SHAM
 from diagnostics.statistics.evaluation import Interval
@@ -66,7 +66,7 @@ class ShamFound:
         }
 
 
-def shams_found(measured: MeasuredSet, sides: Mapping[str, Sequence[Attacker]], seed: int) -> tuple[ShamFound, ...]:
+def shams_found(measured: MeasuredSet, sides: Mapping[str, Sequence[Entry]], seed: int) -> tuple[ShamFound, ...]:
     """Return what attackers reach on every sham of a set, by what they see.
 
     None for a set without a sham, with too few gearboxes, or without a healthy record that a sham can stand beside.
@@ -77,14 +77,14 @@ def shams_found(measured: MeasuredSet, sides: Mapping[str, Sequence[Attacker]], 
     sham = labels[SHAM].astype(bool)
     # As the bank judges damage: a sham's records are no healthy ones while it is asked for.
     asked = replace(measured, labels={**labels, "fault": np.where(sham, SHAM, labels["fault"])})
-    folds = dealt_folds(labels["specimen_id"], seed)
+    folds = DESIGN.dealt(labels["specimen_id"], seed)
     states = dict.fromkeys(labels["state"][sham].tolist())
     found = (_found(asked, (side, bank), state, folds, seed) for state in states for side, bank in sides.items())
     return tuple(one for one in found if one is not None)
 
 
 def _found(
-    asked: MeasuredSet, bank: tuple[str, Sequence[Attacker]], state: str, folds: np.ndarray, seed: int
+    asked: MeasuredSet, bank: tuple[str, Sequence[Entry]], state: str, folds: np.ndarray, seed: int
 ) -> ShamFound | None:
     side, attackers = bank
     every = [(detection_by(asked, one, state, folds, seed).auc, one.name) for one in attackers]
@@ -92,7 +92,7 @@ def _found(
     if not defined:
         return None
     auc, name = max(defined, key=lambda entry: entry[0].value)
-    permutable = [one for one in attackers if one.permutable]
+    permutable = [one for one in attackers if one.many]
     chance = state_chance(asked, permutable, state, folds, exchange_blocks(asked), seed)
     return ShamFound(state, side, name, auc, chance, {name: auc.value for auc, name in defined})
 

@@ -27,14 +27,14 @@ from itertools import combinations
 import numpy as np
 
 from diagnostics.audit.audit import REFERENCED
-from diagnostics.audit.column_attackers import all_columns, best_column
 from diagnostics.audit.detectability import channel_mean
-from diagnostics.audit.held_out import Attacker, Trial, Verdicts
 from diagnostics.audit.innovations import innovations
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.audit.residual_lines import Bank, band_bank, kurtogram_maximum, line_array, residual_lines, whitened
 from diagnostics.audit.tooth_attacker import tooth_attacker
 from diagnostics.base.extras import missing_packages
+from diagnostics.judging.evaluation import Entry
+from diagnostics.judging.learners import all_columns, best_column
 from diagnostics.training.average_rows import AveragedRecords, padded_lines
 from diagnostics.training.splits import SpecimenSplit
 
@@ -54,7 +54,38 @@ PREPARED = 4
 """Steps of preparing them, where records have references."""
 
 
-def network_attacker(name: str, measured: MeasuredSet, reference: np.ndarray | None, seed: int) -> Attacker | None:
+class _FoldNetwork:
+    """The network of the gearboxes to learn from, one for all damaged states; X are places of records."""
+
+    def __init__(self, records: AveragedRecords, usable: np.ndarray, measured: MeasuredSet, seed: int) -> None:
+        self.records, self.usable, self.seed = records, usable, seed
+        self.specimen, self.damaged = measured.labels["specimen_id"], ~measured.healthy
+        self.kept: dict[bytes, np.ndarray] = {}
+
+    def fit(self, X: np.ndarray, y: np.ndarray, groups: np.ndarray) -> _FoldNetwork:  # noqa: ARG002
+        """Learn from all records of these gearboxes; which state is asked about does not matter."""
+        learnt = np.unique(groups)
+        if (key := learnt.tobytes()) not in self.kept:
+            self.kept[key] = self._scores(self.usable & np.isin(self.specimen, learnt))
+        self.said = self.kept[key]
+        return self
+
+    def _scores(self, train: np.ndarray) -> np.ndarray:
+        """Return the probability of damage of every record from a network that learnt from some."""
+        from diagnostics.training.cnn import NetworkSettings, network_probability, train_network
+
+        nobody = np.zeros_like(train)
+        split = SpecimenSplit(train, nobody, nobody, ("healthy", "damaged"))
+        settings = NetworkSettings(most_epochs=max(FEWEST_EPOCHS, round(SHOWN / max(int(train.sum()), 1))))
+        trained = train_network(self.records, self.damaged.astype(np.int64), split, self.seed, settings)
+        return np.asarray(network_probability(trained.network, self.records)[:, 1])
+
+    def score(self, X: np.ndarray) -> np.ndarray:
+        """Return the probability of damage, (1, m)."""
+        return np.asarray(self.said[X][None])
+
+
+def network_attacker(name: str, measured: MeasuredSet, reference: np.ndarray | None, seed: int) -> Entry | None:
     """Return the attacker, or None without PyTorch.
 
     Parameters
@@ -66,7 +97,7 @@ def network_attacker(name: str, measured: MeasuredSet, reference: np.ndarray | N
     seed : int
         Of first weights, order and changed paths.
     """
-    if missing_packages("torch"):
+    if missing_packages("torch", "safetensors"):
         return None
     usable = np.array([all(lines.size for lines in row) for row in measured.waveforms], dtype=bool)
     lines = padded_lines(measured.waveforms)
@@ -75,28 +106,8 @@ def network_attacker(name: str, measured: MeasuredSet, reference: np.ndarray | N
         usable &= (reference >= 0) & usable[reference]
         beside = lines[reference]
     records = AveragedRecords(lines, measured.teeth, measured.channels, beside)
-    specimen, kept = measured.labels["specimen_id"], dict[bytes, np.ndarray]()
-
-    def attack(trial: Trial) -> Verdicts:
-        learnt = np.unique(trial.specimen[trial.train])
-        key = learnt.tobytes()
-        if key not in kept:
-            train = usable & np.isin(specimen, learnt)
-            kept[key] = _scores(records, train, ~measured.healthy, seed)
-        return Verdicts(kept[key][trial.rows[~trial.train]][None])
-
-    return Attacker(name, attack, usable, records.rows * 2 * lines.shape[2], deals=1, permutable=False)
-
-
-def _scores(records: AveragedRecords, train: np.ndarray, damaged: np.ndarray, seed: int) -> np.ndarray:
-    """Return the probability of damage of every record from a network that learnt from some."""
-    from diagnostics.training.cnn import NetworkSettings, network_probability, train_network
-
-    nobody = np.zeros_like(train)
-    split = SpecimenSplit(train, nobody, nobody, ("healthy", "damaged"))
-    settings = NetworkSettings(most_epochs=max(FEWEST_EPOCHS, round(SHOWN / max(int(train.sum()), 1))))
-    trained = train_network(records, damaged.astype(np.int64), split, seed, settings)
-    return network_probability(trained.network, records)[:, 1]
+    network, places = _FoldNetwork(records, usable, measured, seed), np.arange(len(lines))
+    return Entry(name, lambda: network, places, usable, records.rows * 2 * lines.shape[2], deals=1, many=False)
 
 
 def revolution(lines: np.ndarray, steps: int = STEPS) -> np.ndarray:
@@ -149,7 +160,7 @@ def _of_waves(waves: np.ndarray, first: int) -> np.ndarray:
     return np.stack(found, axis=1).astype(np.float32)
 
 
-def signal_attackers(measured: MeasuredSet, seed: int, advance: Callable[[], None]) -> list[Attacker]:
+def signal_attackers(measured: MeasuredSet, seed: int, advance: Callable[[], None]) -> list[Entry]:
     """Return the attackers; those with a reference only where records have one, the network only with PyTorch.
 
     Parameters
@@ -172,7 +183,7 @@ def signal_attackers(measured: MeasuredSet, seed: int, advance: Callable[[], Non
 
 def attackers_on(
     measured: MeasuredSet, residual: np.ndarray, reference: np.ndarray | None, seed: int, advance: Callable[[], None]
-) -> list[Attacker]:
+) -> list[Entry]:
     """Return the attackers on residual lines, which are differences where a reference is given.
 
     Parameters

@@ -9,15 +9,17 @@ the damage is not seen here. Source: derived.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from diagnostics.audit.channel_lags import fine_lags
-from diagnostics.audit.held_out import DEALS, Attacker, Trial, Verdicts
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.residual_lines import line_array
 from diagnostics.indicators.background_levels import NOISE_LEVELS
+from diagnostics.judging.evaluation import Entry
 from diagnostics.statistics.evaluation import column_auc
 
 LEVELS = "levels"
@@ -59,7 +61,7 @@ def sized_states(measured: MeasuredSet) -> list[SizedStates]:
     return found
 
 
-def small_damage_attackers(measured: MeasuredSet, reference: np.ndarray) -> list[Attacker]:
+def small_damage_attackers(measured: MeasuredSet, reference: np.ndarray) -> list[Entry]:
     """Return an attacker for every smallest state, on changes from the reference (records,); -1 without one."""
     values, names = movable_changes(measured, reference)
     if not names:
@@ -102,24 +104,35 @@ def _mesh_changes(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.
     return found
 
 
-def _attacker(measured: MeasuredSet, sizes: SizedStates, values: np.ndarray, names: tuple[str, ...]) -> Attacker:
-    state, specimen = measured.labels["state"], measured.labels["specimen_id"]
+class _LikeLarger:
+    """The column that tells the smallest state best, of those in which no larger state differs from it."""
+
+    def __init__(self, values: np.ndarray, names: Sequence[str], larger: Sequence[np.ndarray], specimen: np.ndarray):
+        self.values, self.names, self.larger, self.specimen = values, names, larger, specimen
+
+    def fit(self, X: np.ndarray, y: np.ndarray, groups: np.ndarray) -> _LikeLarger:
+        """Choose by places (n,) and y (ways, n); of larger damage the gearboxes to learn from."""
+        area = column_auc(self.values[X], y)
+        shown = [rows[np.isin(self.specimen[rows], groups)] for rows in self.larger]
+        alike = np.all([_alike(self.values[rows], self.values[X], y) for rows in shown if rows.size], axis=0)
+        self.best = np.argmax(np.where(alike, np.abs(area - 0.5), -1.0), axis=1)
+        turned = np.where(alike, np.sign(area - 0.5), 0.0)
+        self.turned = np.take_along_axis(turned, self.best[:, None], axis=1)
+        self.basis = self.names[self.best[0]] if self.turned[0, 0] else "nothing"
+        return self
+
+    def score(self, X: np.ndarray) -> np.ndarray:
+        """Return the column, turned so that damage is large, (ways, m)."""
+        return np.asarray(self.turned * self.values[X][:, self.best].T)
+
+
+def _attacker(measured: MeasuredSet, sizes: SizedStates, values: np.ndarray, names: tuple[str, ...]) -> Entry:
+    state = measured.labels["state"]
     defined = np.isfinite(values).all(axis=1)
     larger = [np.flatnonzero(defined & (state == one)) for one in sizes.larger]
-
-    def attack(trial: Trial) -> Verdicts:
-        learnt, positive = trial.rows[trial.train], trial.positive[:, trial.train]
-        area = column_auc(values[learnt], positive)
-        shown = [rows[np.isin(specimen[rows], trial.specimen[trial.train])] for rows in larger]
-        alike = np.all([_alike(values[rows], values[learnt], positive) for rows in shown if rows.size], axis=0)
-        distance = np.where(alike, np.abs(area - 0.5), -1.0)
-        best = np.argmax(distance, axis=1)
-        chosen = np.take_along_axis(np.where(alike, np.sign(area - 0.5), 0.0), best[:, None], axis=1)
-        basis = names[best[0]] if chosen[0, 0] else "nothing"
-        return Verdicts(chosen * values[trial.rows[~trial.train]][:, best].T, basis)
-
     usable = defined & (measured.healthy | (state == sizes.smallest))
-    return Attacker(f"change of {LEVELS}", attack, usable, len(names), DEALS)
+    make = partial(_LikeLarger, values, names, larger, measured.labels["specimen_id"])
+    return Entry(f"change of {LEVELS}", make, np.arange(len(values)), usable, len(names))
 
 
 def _alike(larger: np.ndarray, learnt: np.ndarray, positive: np.ndarray) -> np.ndarray:

@@ -8,12 +8,13 @@ of the level is the power of 64 parts of the record in decibels, less their mean
 
 from __future__ import annotations
 
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
-from diagnostics.audit.column_attackers import ridge_scores
-from diagnostics.audit.held_out import DEALS, Attacker, Trial, Verdicts
+from diagnostics.judging.evaluation import Entry
+from diagnostics.judging.learners import GroupRidge
 
 TEMPLATES = "templates"
 SAMPLES, AROUND = 16384, 32
@@ -70,14 +71,10 @@ def template_products(codes: list[np.ndarray], courses: list[np.ndarray]) -> dic
     return {**found, "courses of the level": every @ every.T}
 
 
-def template_attackers(products: dict[str, np.ndarray]) -> list[Attacker]:
+def template_attackers(products: dict[str, np.ndarray]) -> list[Entry]:
     """Return the attackers on products of all pairs of records, (records, records) each, by what they are of."""
-    return [_attacker(f"{TEMPLATES} of {what}", product) for what, product in products.items() if product.any()]
-
-
-def _attacker(name: str, product: np.ndarray) -> Attacker:
-    def attack(trial: Trial) -> Verdicts:
-        own = product[np.ix_(trial.rows, trial.rows)]
-        return Verdicts(ridge_scores(own, trial.positive, trial.specimen, trial.train))
-
-    return Attacker(name, attack, np.diagonal(product) > 0.0, len(product), DEALS)
+    return [
+        Entry(f"{TEMPLATES} of {what}", partial(GroupRidge, own), np.arange(len(own)), np.diagonal(own) > 0.0, len(own))
+        for what, own in products.items()
+        if own.any()
+    ]

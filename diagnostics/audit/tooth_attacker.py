@@ -7,14 +7,15 @@ record has the score of its loudest tooth. Derived.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
-from diagnostics.audit.held_out import Attacker, Trial, Verdicts
 from diagnostics.audit.innovations import measured_channels
 from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.judging.evaluation import Entry
 
 STEPS = 48
 """Angle steps of a pitch."""
@@ -55,7 +56,42 @@ def tooth_energies(lines: np.ndarray, teeth: int) -> np.ndarray:
     return np.concatenate(found, axis=-1)
 
 
-def tooth_attacker(name: str, measured: MeasuredSet, lines: np.ndarray) -> Attacker | None:
+class _LoudestTooth:
+    """Logistic regression on energies of teeth (teeth, columns) by record; X are places of records."""
+
+    def __init__(self, energies: Mapping[int, np.ndarray], faulty: np.ndarray) -> None:
+        self.energies, self.faulty = energies, faulty
+
+    def fit(self, X: np.ndarray, y: np.ndarray, groups: np.ndarray) -> _LoudestTooth:  # noqa: ARG002
+        """Fit to all teeth of healthy records and to those that labels name; y (1, n)."""
+        from sklearn.linear_model import LogisticRegression
+        from sklearn.pipeline import make_pipeline
+        from sklearn.preprocessing import StandardScaler
+
+        damaged = y[0].tolist()
+        rows = [self._known(row, ill) for row, ill in zip(X.tolist(), damaged, strict=True)]
+        target = np.repeat(damaged, [len(one) for one in rows])
+        self.model = None
+        if 0 < target.sum() < target.size:
+            model = LogisticRegression(C=STRENGTH, class_weight="balanced", max_iter=300)
+            self.model = make_pipeline(StandardScaler(), model).fit(np.concatenate(rows), target)
+        return self
+
+    def _known(self, row: int, ill: bool) -> np.ndarray:
+        """Return the teeth to learn from: all of a healthy record, else those named; strangers may count from 1."""
+        own = self.energies[row]
+        return own[[tooth for tooth in self.faulty[row] if 0 <= tooth < len(own)]] if ill else own
+
+    def score(self, X: np.ndarray) -> np.ndarray:
+        """Return the score of the loudest tooth of every record, (1, m); all alike where no label names a tooth."""
+        if self.model is None:
+            return np.zeros((1, X.size))
+        asked = [self.energies[row] for row in X.tolist()]
+        first = np.cumsum([0, *map(len, asked[:-1])])
+        return np.maximum.reduceat(self.model.decision_function(np.concatenate(asked)), first)[None]
+
+
+def tooth_attacker(name: str, measured: MeasuredSet, lines: np.ndarray) -> Entry | None:
     """Return the attacker, or None where no label names a tooth of the first driver.
 
     Parameters
@@ -69,35 +105,7 @@ def tooth_attacker(name: str, measured: MeasuredSet, lines: np.ndarray) -> Attac
     if faulty is None:
         return None
     usable = np.asarray(measured_channels(lines).all(axis=1))
-    teeth = measured.teeth
-    asked = {row: tooth_energies(lines[row], int(teeth[row])) for row in np.flatnonzero(usable).tolist()}
-
-    def attack(trial: Trial) -> Verdicts:
-        learnt, judged = trial.rows[trial.train].tolist(), trial.rows[~trial.train].tolist()
-        damaged = trial.positive[0][trial.train].tolist()
-        rows = [_known(asked[row], faulty[row], ill) for row, ill in zip(learnt, damaged, strict=True)]
-        target = np.repeat(damaged, [len(one) for one in rows])
-        if not 0 < target.sum() < target.size:  # no label names a tooth
-            return Verdicts(np.zeros((1, len(judged))))
-        said = _learnt(np.concatenate(rows), target)(np.concatenate([asked[row] for row in judged]))
-        first = np.cumsum([0, *(len(asked[row]) for row in judged[:-1])])
-        return Verdicts(np.maximum.reduceat(said, first)[None])
-
-    columns = next(iter(asked.values())).shape[1] if asked else 0
-    return Attacker(name, attack, usable, columns, deals=1, permutable=False)
-
-
-def _known(energies: np.ndarray, faulty: Sequence[int], damaged: bool) -> np.ndarray:
-    """Return the teeth to learn from: all of a healthy record, else those named; foreign labels may count from 1."""
-    return energies[[tooth for tooth in faulty if 0 <= tooth < len(energies)]] if damaged else energies
-
-
-def _learnt(values: np.ndarray, target: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    """Return what gives the score of teeth from those that are known."""
-    from sklearn.linear_model import LogisticRegression
-    from sklearn.pipeline import make_pipeline
-    from sklearn.preprocessing import StandardScaler
-
-    model = make_pipeline(StandardScaler(), LogisticRegression(C=STRENGTH, class_weight="balanced", max_iter=300))
-    fitted = model.fit(values, target)
-    return lambda rows: np.asarray(fitted.decision_function(rows))
+    teeth, places = measured.teeth, np.arange(len(lines))
+    energies = {row: tooth_energies(lines[row], int(teeth[row])) for row in places[usable].tolist()}
+    columns = next(iter(energies.values())).shape[1] if energies else 0
+    return Entry(name, partial(_LoudestTooth, energies, faulty), places, usable, columns, deals=1, many=False)

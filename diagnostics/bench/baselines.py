@@ -1,13 +1,13 @@
 """Baselines of a benchmark: what anybody's detector is compared with, each learned on the part to learn from alone.
 
-One detector is a function: records, and which of those to learn from it may see, to a score of every record. The stack
-weighs others by logistic regression on what they say of gearboxes that they have not seen (nested folds); so nothing
-is chosen on a test part. Source: stacked generalisation (Wolpert 1992), standard literature.
+The stack weighs others by logistic regression on what they say of gearboxes that they have not seen (nested folds); so
+nothing is chosen on a test part. Source: stacked generalisation (Wolpert 1992), standard literature.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -20,12 +20,13 @@ from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.base.single_thread import single_thread
 from diagnostics.bench.seen_records import PartRecords, SeenRecords, benchmark_records, only, seen_records
-from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.judging.evaluation import Design, Entry, pooled_scores
+from diagnostics.judging.learners import BestColumn, Odds
 from diagnostics.scoring.benchmark import Benchmark
 from diagnostics.scoring.detect import DAMAGE
 from diagnostics.scoring.prediction_file import CLASSIFIER, RECORD
-from diagnostics.statistics.evaluation import column_auc
-from diagnostics.training.detectors import Scorer, boosting_scorer, logistic_scorer
+from diagnostics.training.average_rows import AveragedRecords
+from diagnostics.training.feature_classifier import DEFAULT_STRENGTH
 from diagnostics.training.splits import SpecimenSplit
 
 REFERENCE = "reference"
@@ -39,104 +40,113 @@ CHANCE, RMS, KURTOGRAM, SIX, BAND = "chance", "RMS alone", "kurtogram", "six col
 BOOSTING, CONVOLUTIONS, NETWORK, STACK = "gradient boosting", "random convolutions", "1-D network", "stack"
 STACKED = (KURTOGRAM, BAND, BOOSTING, CONVOLUTIONS, NETWORK)
 
-Detector = Callable[[SeenRecords, np.ndarray], np.ndarray]
-"""Records, and which of those to learn from may be seen (learn,) bool; returns a score of every record (records,)."""
+
+class AsItIs:
+    """A number that nothing is learnt for."""
+
+    def fit(self, X: np.ndarray, y: np.ndarray, groups: np.ndarray) -> AsItIs:  # noqa: ARG002
+        """Learn nothing."""
+        return self
+
+    def score(self, X: np.ndarray) -> np.ndarray:
+        """Return the number."""
+        return X
 
 
-def detectors(seed: int) -> dict[str, Detector]:
-    """Return the detectors without the stack; the network only with PyTorch."""
-    found: dict[str, Detector] = {
-        CHANCE: lambda seen, _: generator(seed, Purpose.PERMUTATION, CHANCE_OWNER).uniform(size=len(seen.kurtogram)),
-        RMS: lambda seen, used: _scored(_logistic(seen), only(seen, ("rms",)), seen, used),
-        KURTOGRAM: lambda seen, _: seen.kurtogram,
-        SIX: lambda seen, used: _scored(_logistic(seen), only(seen, (*LEVELS, *PLAIN, *ADDED)), seen, used),
-        BAND: _best_band,
-        BOOSTING: lambda seen, used: _scored(_boosting(seed), seen.matrix, seen, used),
-        CONVOLUTIONS: _ridge,
-    }
-    return found if missing_packages("torch") else {**found, NETWORK: lambda seen, used: _network(seen, used, seed)}
+class RidgeOfRecords:
+    """Ridge regression whose penalty is chosen by leaving one record out, as MiniRocket does."""
+
+    def fit(self, X: np.ndarray, y: np.ndarray, groups: np.ndarray) -> RidgeOfRecords:  # noqa: ARG002
+        """Fit to X (n, columns)."""
+        from sklearn.linear_model import RidgeClassifierCV
+        from sklearn.pipeline import make_pipeline
+        from sklearn.preprocessing import StandardScaler
+
+        model = make_pipeline(StandardScaler(), RidgeClassifierCV(np.logspace(-1, 5, 10), class_weight="balanced"))
+        self.model = model.fit(X, y)
+        return self
+
+    def score(self, X: np.ndarray) -> np.ndarray:
+        """Return the distance from the plane between both classes."""
+        return np.asarray(self.model.decision_function(X))
 
 
-def _logistic(seen: SeenRecords) -> Scorer:
-    return lambda matrix, damaged: logistic_scorer(matrix, damaged, take_logarithms=not seen.referenced)
+class StoppedNetwork:
+    """The 1-D network; every fifth gearbox says when to stop. X are places of records; scores are log odds."""
+
+    def __init__(self, records: AveragedRecords, stops: np.ndarray, seed: int) -> None:
+        self.records, self.stops, self.seed = records, stops, seed
+
+    def fit(self, X: np.ndarray, y: np.ndarray, groups: np.ndarray) -> StoppedNetwork:  # noqa: ARG002
+        """Train."""
+        from diagnostics.training.cnn import train_network
+
+        stops = self.stops[X]
+        learn, chooses, nobody = (np.zeros(len(self.records.teeth), dtype=bool) for _ in range(3))
+        learn[X[~stops]], chooses[X[stops]] = True, True
+        target = np.zeros(learn.size, dtype=np.int64)
+        target[X] = y
+        split = SpecimenSplit(learn, chooses, nobody, ("healthy", "damaged"))
+        self.network = train_network(self.records, target, split, self.seed).network
+        return self
+
+    def score(self, X: np.ndarray) -> np.ndarray:
+        """Return the logarithm of the odds."""
+        from diagnostics.training.cnn import network_probability
+
+        probability = np.clip(network_probability(self.network, self.records.chosen(X))[:, 1], 1e-12, 1.0 - 1e-12)
+        return np.asarray(np.log(probability) - np.log1p(-probability))
 
 
-def _boosting(seed: int) -> Scorer:
-    return lambda matrix, damaged: boosting_scorer(matrix, damaged, seed=seed)
+def entries(seen: SeenRecords, seed: int) -> list[Entry]:
+    """Return the baselines without the stack; the network only with PyTorch."""
+    from diagnostics.training.classifiers import DEFAULT_TREES, BoostingBaseline, LogisticBaseline
+
+    every = np.ones(len(seen.kurtogram), dtype=bool)
+    gearbox = np.unique(seen.gearbox, return_inverse=True)[1]
+    stops = gearbox % LEFT_OUT == LEFT_OUT - 1
+
+    def logistic() -> Odds:
+        return Odds(LogisticBaseline((DEFAULT_STRENGTH,), take_logarithms=not seen.referenced))
+
+    bands, convolutions = (np.where(np.isfinite(x), x, 0.0) for x in (seen.bands, seen.convolutions))
+    lots = generator(seed, Purpose.PERMUTATION, CHANCE_OWNER).uniform(size=every.size)
+    found = [
+        Entry(CHANCE, AsItIs, lots, every),
+        Entry(RMS, logistic, only(seen, ("rms",)).values, every),
+        Entry(KURTOGRAM, AsItIs, seen.kurtogram, every),
+        Entry(SIX, logistic, only(seen, (*LEVELS, *PLAIN, *ADDED)).values, every),
+        Entry(BAND, partial(BestColumn, [str(k) for k in range(bands.shape[1])]), bands, every),
+        Entry(BOOSTING, lambda: Odds(BoostingBaseline(seed, DEFAULT_TREES)), seen.matrix.values, every),
+        Entry(CONVOLUTIONS, RidgeOfRecords, convolutions, every),
+        Entry(NETWORK, partial(StoppedNetwork, seen.averages, stops, seed), np.arange(every.size), every),
+    ]
+    return found[:-1] if missing_packages("torch", "safetensors") else found
 
 
-def _scored(scorer: Scorer, matrix: FeatureMatrix, seen: SeenRecords, used: np.ndarray) -> np.ndarray:
-    own = np.zeros(len(matrix.values), dtype=bool)
-    own[: seen.learn] = used
-    return scorer(matrix.rows(own), seen.damaged[used])(matrix)
-
-
-def _best_band(seen: SeenRecords, used: np.ndarray) -> np.ndarray:
-    """Take the column of all bands, and its direction, that is best on the records to learn from."""
-    values = np.where(np.isfinite(seen.bands), seen.bands, 0.0)
-    area = column_auc(values[: seen.learn][used], seen.damaged[used])
-    best = int(np.argmax(np.abs(area - 0.5)))
-    return np.asarray(values[:, best] * (1.0 if area[best] >= 0.5 else -1.0))
-
-
-def _ridge(seen: SeenRecords, used: np.ndarray) -> np.ndarray:
-    """Weigh random convolutions by ridge regression; its penalty by leaving one record out, as MiniRocket does."""
-    from sklearn.linear_model import RidgeClassifierCV
-    from sklearn.pipeline import make_pipeline
-    from sklearn.preprocessing import StandardScaler
-
-    values = np.where(np.isfinite(seen.convolutions), seen.convolutions, 0.0)
-    model = make_pipeline(StandardScaler(), RidgeClassifierCV(np.logspace(-1, 5, 10), class_weight="balanced"))
-    return np.asarray(model.fit(values[: seen.learn][used], seen.damaged[used]).decision_function(values))
-
-
-def _network(seen: SeenRecords, used: np.ndarray, seed: int) -> np.ndarray:
-    """Train the 1-D network; every fifth gearbox says when to stop. The score is the logarithm of the odds."""
-    from diagnostics.training.cnn import network_probability, train_network
-
-    _, gearbox = np.unique(seen.gearbox, return_inverse=True)
-    known, stops, nobody = (np.zeros(len(seen.kurtogram), dtype=bool) for _ in range(3))
-    known[: seen.learn], stops[: seen.learn] = used, used & (gearbox % LEFT_OUT == LEFT_OUT - 1)
-    target = np.zeros(known.size, dtype=np.int64)
-    target[: seen.learn] = seen.damaged
-    split = SpecimenSplit(known & ~stops, stops, nobody, ("healthy", "damaged"))
-    trained = train_network(seen.averages, target, split, seed)
-    probability = np.clip(network_probability(trained.network, seen.averages)[:, 1], 1e-12, 1.0 - 1e-12)
-    return np.asarray(np.log(probability) - np.log1p(-probability))
-
-
-def stacked(
-    seen: SeenRecords, known: Mapping[str, Detector], every: Mapping[str, np.ndarray], seed: int, stage: Stage
-) -> np.ndarray:
+def stacked(seen: SeenRecords, known: Sequence[Entry], every: Mapping[str, np.ndarray], seed: int) -> np.ndarray:
     """Return the scores of the stack.
 
     Parameters
     ----------
     seen : SeenRecords
-    known : mapping of str to Detector
+    known : sequence of Entry
         Those to be weighed.
     every : mapping of str to (records,) float64
         Their scores after learning from all records to learn from.
     seed : int
         Deals gearboxes into folds.
-    stage : Stage
     """
     from sklearn.linear_model import LogisticRegression
     from sklearn.pipeline import make_pipeline
     from sklearn.preprocessing import StandardScaler
 
-    unique, place = np.unique(seen.gearbox, return_inverse=True)
-    fold = generator(seed, Purpose.FOLDS, CHANCE_OWNER).permutation(unique.size)[place] % min(FOLDS, unique.size)
-    unseen = np.zeros((seen.learn, len(known)))
-    with stage("stack", int(fold.max()) + 1) as advance:
-        for held in np.unique(fold).tolist():
-            own = fold == held
-            for column, detector in enumerate(known.values()):
-                unseen[own, column] = detector(seen, ~own)[: seen.learn][own]
-            advance()
+    fold = Design(FOLDS, CHANCE_OWNER).dealt(seen.gearbox, seed)[0]
+    own = (replace(entry, X=entry.X[: seen.learn]) for entry in known)
+    unseen = np.stack([pooled_scores(entry, seen.damaged, seen.gearbox, fold)[0] for entry in own], axis=1)
     model = make_pipeline(StandardScaler(), LogisticRegression(class_weight="balanced", max_iter=1000))
     model.fit(unseen, seen.damaged)
-    return np.asarray(model.decision_function(np.stack([every[name] for name in known], axis=1)))
+    return np.asarray(model.decision_function(np.stack([every[entry.name] for entry in known], axis=1)))
 
 
 def damage_predictions(benchmark: Benchmark, seed: int, workers: int, stage: Stage) -> Iterator[pa.Table]:
@@ -165,14 +175,15 @@ def _predictions(parts: tuple[PartRecords, ...], seed: int, stage: Stage, refere
     seen = seen_records(parts, referenced=referenced)
     if not seen.tests().size or np.unique(seen.damaged).size < 2:
         return
-    known = detectors(seed)
+    known = entries(seen, seed)
     scores = {}
-    with stage(f"baselines{BESIDE if referenced else ''}", len(known)) as advance:
-        for name, detector in known.items():
-            scores[name] = detector(seen, np.ones(seen.learn, dtype=bool))
+    with stage(f"baselines{BESIDE if referenced else ''}", len(known) + 1) as advance:
+        for entry in known:
+            learnt = entry.make().fit(entry.X[: seen.learn], seen.damaged, seen.gearbox)
+            scores[entry.name] = learnt.score(entry.X)
             advance()
-    weighed = {name: known[name] for name in STACKED if name in known}
-    scores[STACK] = stacked(seen, weighed, scores, seed, stage)
+        scores[STACK] = stacked(seen, [entry for entry in known if entry.name in STACKED], scores, seed)
+        advance()
     for name, score in scores.items():
         yield _rows(f"{name}{BESIDE if referenced else ''}", seen.tests(), score[seen.learn :], referenced)
 

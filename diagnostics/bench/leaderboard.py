@@ -41,7 +41,7 @@ SUFFIXES = (".parquet", ".csv")
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class BoardEntry:
     """Samples of the score of one entry by part: the value itself, then those of resampled gearboxes; and of the leak.
 
     By part too, `gearboxes` is the number that limits count, `chance` what an answer without knowledge reaches.
@@ -69,7 +69,7 @@ class Entry:
         return sum(self.gearboxes[one] for one in self.every) if part == MEAN else self.gearboxes[part]
 
 
-def board_entries(benchmark: Benchmark, labels: SealedLabels, folder: Path | None, seed: int) -> list[Entry]:
+def board_entries(benchmark: Benchmark, labels: SealedLabels, folder: Path | None, seed: int) -> list[BoardEntry]:
     """Return all entries: the baselines of the benchmark, and the files of a folder.
 
     Raises
@@ -87,7 +87,7 @@ def board_entries(benchmark: Benchmark, labels: SealedLabels, folder: Path | Non
         )
     parts, ranking = judged_parts(benchmark, labels), ranking_of(benchmark)
     weights = {part.name: bootstrap_weights(part.truth.specimen, seed, RESAMPLES) for part in parts}
-    found: dict[str, Entry] = {}
+    found: dict[str, BoardEntry] = {}
     for file in files:
         read = prediction_table(file)
         columns = part_columns(benchmark, parts, read, file, file.stem)
@@ -120,7 +120,7 @@ def _entry(
     answers: Mapping[str, Any],
     parts: Sequence[JudgedPart],
     weights: Mapping[str, np.ndarray],
-) -> Entry:
+) -> BoardEntry:
     task, measure = ranking.task, ranking.measure
     found: dict[str | None, dict[str, np.ndarray]] = {ranking.records: {}, ranking.leak: {}}
     for part in parts:
@@ -132,10 +132,10 @@ def _entry(
                 samples[part.name] = measure.samples(said[asked[what]], rows, drawn)
     counts = {part.name: measure.gearboxes(part.truth) for part in parts}
     chance = {part.name: measure.chance(part.truth) for part in parts}
-    return Entry(name, referenced, ranking, found[ranking.records], found[ranking.leak], counts, chance)
+    return BoardEntry(name, referenced, ranking, found[ranking.records], found[ranking.leak], counts, chance)
 
 
-def write_board(benchmark: Benchmark, entries: Sequence[Entry], folder: Path) -> Path:
+def write_board(benchmark: Benchmark, entries: Sequence[BoardEntry], folder: Path) -> Path:
     """Write the page, and its numbers beside it; return the page."""
     ranking = ranking_of(benchmark)
     tables = {referenced: _ordered(entries, benchmark.parts, referenced) for referenced in ranking.tracks}
@@ -152,18 +152,18 @@ def write_board(benchmark: Benchmark, entries: Sequence[Entry], folder: Path) ->
     return path
 
 
-def _ordered(entries: Sequence[Entry], parts: Sequence[str], referenced: bool) -> list[Entry]:
+def _ordered(entries: Sequence[BoardEntry], parts: Sequence[str], referenced: bool) -> list[BoardEntry]:
     """Return the entries of a track, the best mean first; those that lack a part last."""
     own = [entry for entry in entries if entry.referenced == referenced and entry.every]
     return sorted(own, key=lambda one: (len(one.every) < len(parts), -_goodness(one), one.name))
 
 
-def _goodness(entry: Entry) -> float:
+def _goodness(entry: BoardEntry) -> float:
     """Return the mean score, of a score that falls with its sign turned: more is better."""
     return float(entry.samples(MEAN)[0]) * (-1.0 if entry.ranking.measure.falls else 1.0)
 
 
-def _sentences(benchmark: Benchmark, tables: Mapping[bool, list[Entry]]) -> list[str]:
+def _sentences(benchmark: Benchmark, tables: Mapping[bool, list[BoardEntry]]) -> list[str]:
     entries, ranking = [entry for ordered in tables.values() for entry in ordered], ranking_of(benchmark)
     return [
         *(_lead(ranking.tracks[referenced], ordered) for referenced, ordered in tables.items() if ordered),
@@ -173,7 +173,7 @@ def _sentences(benchmark: Benchmark, tables: Mapping[bool, list[Entry]]) -> list
     ]
 
 
-def _leak_sentence(entries: Sequence[Entry]) -> str:
+def _leak_sentence(entries: Sequence[BoardEntry]) -> str:
     sham = [(part, entry) for entry in entries for part in entry.leak]
     outside = [f"{entry.name} on {part}" for part, entry in sham if not _holds_chance(entry, part)]
     told = f" Outside: {', '.join(outside[:5])}." if outside else ""
@@ -183,7 +183,7 @@ def _leak_sentence(entries: Sequence[Entry]) -> str:
     )
 
 
-def _lead(track: str, ordered: Sequence[Entry]) -> str:
+def _lead(track: str, ordered: Sequence[BoardEntry]) -> str:
     """Return who leads, and whether the gearboxes tell the second from it."""
     first, score = ordered[0], ordered[0].score(MEAN)
     measure = first.ranking.measure
@@ -198,12 +198,12 @@ def _lead(track: str, ordered: Sequence[Entry]) -> str:
     return f"{said}, {ordered[1].name} follows with {apart}{telling}."
 
 
-def _holds_chance(entry: Entry, part: str) -> bool:
+def _holds_chance(entry: BoardEntry, part: str) -> bool:
     found = area_interval(entry.leak[part], entry.gearboxes[part])
     return not (found.low > 0.5 or found.high < 0.5)
 
 
-def _figure(ordered: Sequence[Entry]) -> str:
+def _figure(ordered: Sequence[BoardEntry]) -> str:
     """Return the means as a figure; nothing without matplotlib."""
     if missing_packages("matplotlib"):
         return ""
@@ -216,7 +216,7 @@ def _figure(ordered: Sequence[Entry]) -> str:
     return figure_grid([figure_block(png_bytes(score_figure(rows)), caption)])
 
 
-def _table(ordered: Sequence[Entry], parts: Sequence[str]) -> list[str]:
+def _table(ordered: Sequence[BoardEntry], parts: Sequence[str]) -> list[str]:
     columns = [MEAN, *parts]
     leader = ordered[0]
     rows, apart = [], []
@@ -238,18 +238,18 @@ def _caption(ranking: Ranking) -> str:
     return f"{capitalised(ranking.measure.name)} of {ranking.records}."
 
 
-def _behind(leader: Entry, entry: Entry, part: str) -> Cell:
+def _behind(leader: BoardEntry, entry: BoardEntry, part: str) -> Cell:
     if part not in (MEAN, *leader.every):
         return Cell("–")
     return interval_cell(paired(leader, entry, part), sign=True)
 
 
-def paired(first: Entry, second: Entry, part: str) -> Interval:
+def paired(first: BoardEntry, second: BoardEntry, part: str) -> Interval:
     """Return the second minus the first, on the same resampled gearboxes."""
     return interval(second.samples(part) - first.samples(part), first.count(part))
 
 
-def _numbers(ordered: Sequence[Entry], benchmark: Benchmark) -> list[dict[str, Any]]:
+def _numbers(ordered: Sequence[BoardEntry], benchmark: Benchmark) -> list[dict[str, Any]]:
     """Return the numbers of a track; the mean only of entries that have all parts."""
     return [
         {
@@ -267,5 +267,5 @@ def _numbers(ordered: Sequence[Entry], benchmark: Benchmark) -> list[dict[str, A
     ]
 
 
-def _parts(entry: Entry, benchmark: Benchmark) -> tuple[str, ...]:
+def _parts(entry: BoardEntry, benchmark: Benchmark) -> tuple[str, ...]:
     return (*((MEAN,) if len(entry.every) == len(benchmark.parts) else ()), *entry.every)

@@ -17,7 +17,7 @@ from siggen.errors import UsageError
 
 if TYPE_CHECKING:
     from diagnostics.indicators.own_indicator import OwnIndicator
-    from diagnostics.training.network_training import NetworkOptions
+    from diagnostics.judging.of_split import NetworkOptions
     from siggen.dataset.reading import Dataset
 
 
@@ -67,11 +67,11 @@ def report(
     if models_only:
         require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if training.cnn else ()))
     from diagnostics.explore.set_page import LookOptions
+    from diagnostics.judging.of_split import NetworkOptions, check_device
+    from diagnostics.judging.sets import open_sets
     from diagnostics.records.record_classes import check_kind
     from diagnostics.report.life_report import write_life_report
     from diagnostics.scoring.truth import is_lives
-    from diagnostics.training.network_training import NetworkOptions, check_device
-    from diagnostics.training.training_sets import open_sets
 
     if training.cnn and not missing_packages("torch"):
         check_device(training.device)
@@ -139,9 +139,9 @@ def _models(
 ) -> Path:
     """Train, and write the models and what they reach; return their folder."""
     from diagnostics.base.progress import terminal_stage
+    from diagnostics.judging.of_split import train_models, training_metrics
+    from diagnostics.judging.sets import other_table, set_table
     from diagnostics.prediction.saved_models import class_text, save_models
-    from diagnostics.training.training import train_models, training_metrics
-    from diagnostics.training.training_sets import other_table, set_table
     from siggen.errors import DatasetError
     from siggen.file_writing import write_file
 

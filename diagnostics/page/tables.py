@@ -13,11 +13,11 @@ from urllib.parse import quote, urlencode
 
 import numpy as np
 
+from diagnostics.judging.judgement import BOOSTING, TITLES
+from diagnostics.judging.of_split import Training
 from diagnostics.page.html import Cell, inline, link, table
 from diagnostics.page.wording import counted
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.judgement import BOOSTING, TITLES
-from diagnostics.training.training import Training
 
 MOST_LINKS = 20
 """Below a figure; more would be longer than its caption."""

@@ -7,5 +7,5 @@ from diagnostics.prediction.released_model import try_model
 
 __all__ = ("try_model",)
 
-LOADED_ONCE = (*released_model.LOADED_ONCE, "diagnostics.training.cnn_files")
+LOADED_ONCE = (*released_model.LOADED_ONCE, "diagnostics.training.cnn")
 """As far as it is installed."""

@@ -298,12 +298,15 @@ def _network_vote(
     """Return the vote of the network where the pieces have them, else why not."""
     if model.network is None:
         return (), ()
-    from diagnostics.prediction.network_votes import network_probabilities
+    from diagnostics.training.average_rows import AveragedRecords, padded_lines
+    from diagnostics.training.cnn import network_probability
 
-    network, facts = model.network
+    trained = model.network
     if not all(pieces.waveforms):
         return (), ("the 1-D network takes averages of two turns of the first shaft or more: left out",)
-    return (_vote(NETWORK, network_probabilities(network, facts, pieces.waveforms, teeth[0]), facts.temperature),), ()
+    lines = padded_lines([[piece[name] for name in trained.channels] for piece in pieces.waveforms])
+    records = AveragedRecords(lines, np.full(len(lines), teeth[0]), trained.channels)
+    return (_vote(NETWORK, network_probability(trained.network, records), trained.temperature),), ()
 
 
 def _distance_reasons(plain: Nearness, nearness: Nearness) -> list[str]:

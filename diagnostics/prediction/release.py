@@ -11,18 +11,18 @@ import pyarrow as pa
 
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.judging.judgement import REFERENCED as REFERENCED_NAME
+from diagnostics.judging.of_split import Training
 from diagnostics.prediction.model_facts import ModelFacts, model_facts, write_facts
 from diagnostics.prediction.noise_floor import floor_features
 from diagnostics.prediction.training_distance import TrainingDistance, calibrated_distance, distance_features
 from diagnostics.records.gear_train import GearNames
 from diagnostics.records.record_classes import set_classes
 from diagnostics.records.recording import names_of, recordings
-from diagnostics.statistics.judgement import REFERENCED as REFERENCED_NAME
 from diagnostics.statistics.scores import IntervalScores
-from diagnostics.training.baselines import FeatureClassifier
+from diagnostics.training.feature_classifier import FeatureClassifier
 from diagnostics.training.referenced import healthy_referenced, log_values, reference_speed_ratio
 from diagnostics.training.splits import SpecimenSplit
-from diagnostics.training.training import Training
 from siggen.dataset.reading import Dataset
 
 REFERENCED = "referenced_"

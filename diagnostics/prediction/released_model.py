@@ -15,6 +15,7 @@ from diagnostics.base.reading_process import read_apart
 from diagnostics.indicators.own_indicator import OwnIndicator, all_own
 from diagnostics.indicators.registry import indicator_columns
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.judging.judgement import NETWORK
 from diagnostics.prediction.model_facts import (
     FACTS_FILE,
     MODEL_FILES,
@@ -28,8 +29,6 @@ from diagnostics.prediction.release import REFERENCED
 from diagnostics.prediction.training_distance import TrainingDistance
 from diagnostics.scoring.prediction_file import MODELS_FOLDER
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.judgement import NETWORK
-from diagnostics.training.baselines import FeatureClassifier
 from diagnostics.training.classifier_file import (
     CLASSIFIER_FILE,
     NAMES_FILE,
@@ -37,11 +36,11 @@ from diagnostics.training.classifier_file import (
     load_classifier,
     load_settings,
 )
+from diagnostics.training.feature_classifier import FeatureClassifier
 from siggen.errors import UsageError, how_to_install
 
 if TYPE_CHECKING:
-    from diagnostics.training.cnn import CircularNetwork
-    from diagnostics.training.cnn_files import NetworkFacts
+    from diagnostics.training.cnn import TrainedNetwork
 
 NETWORK_FILE = "cnn.safetensors"
 LOADED_ONCE = ("diagnostics.training.skops_io",)
@@ -128,8 +127,8 @@ class ReleasedModel:
         On the features themselves.
     referenced_classifier, referenced_distance
         On features minus the machine's own healthy ones; None where the set did not allow the variant.
-    network : tuple or None
-        Network and what its file says; None where it was not trained or torch is missing.
+    network : TrainedNetwork or None
+        None where it was not trained or torch is missing.
     accuracy : mapping of str to Interval
         Accuracy on the test specimens by classifier.
     note : str
@@ -145,7 +144,7 @@ class ReleasedModel:
     distance: TrainingDistance
     referenced_classifier: FeatureClassifier | None
     referenced_distance: TrainingDistance | None
-    network: tuple[CircularNetwork, NetworkFacts] | None
+    network: TrainedNetwork | None
     accuracy: Mapping[str, Interval]
     note: str
     own: tuple[OwnIndicator, ...] = ()
@@ -263,7 +262,7 @@ def _check_folder(
     folder: Path,
     facts: ModelFacts,
     classifiers: Mapping[str, FeatureClassifier],
-    network: tuple[CircularNetwork, NetworkFacts] | None,
+    network: TrainedNetwork | None,
 ) -> None:
     parts = []
     for prefix, classifier in classifiers.items():
@@ -271,7 +270,7 @@ def _check_folder(
         identity = classifier_identity(folder, prefix)
         parts.append(classifier_part(f"{prefix}{NAMES_FILE}", identity, classifier))
     if network:
-        parts.append(ModelPart(NETWORK_FILE, network[1].identity, network[1].classes, network[1].channels))
+        parts.append(ModelPart(NETWORK_FILE, network.identity, network.classes, network.channels))
     check_parts(folder, facts, parts)
 
 
@@ -285,7 +284,7 @@ def _loadable(folder: Path, scored: Mapping[str, bool]) -> tuple[tuple[str, ...]
     return present, note if lost else ""
 
 
-def _network(folder: Path) -> tuple[CircularNetwork, NetworkFacts]:
-    from diagnostics.training.cnn_files import load_network
+def _network(folder: Path) -> TrainedNetwork:
+    from diagnostics.training.cnn import load_network
 
     return load_network(folder / NETWORK_FILE)

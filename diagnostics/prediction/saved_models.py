@@ -17,6 +17,8 @@ import pyarrow as pa
 from diagnostics.indicators.classifier_table import table_settings
 from diagnostics.indicators.registry import indicator_columns
 from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.judging.judgement import Judged
+from diagnostics.judging.of_split import Training, expected_area
 from diagnostics.prediction.model_facts import FACTS_FILE, MODEL_FILES
 from diagnostics.prediction.release import Release, release, save_release
 from diagnostics.records.gear_train import GearNames
@@ -25,12 +27,9 @@ from diagnostics.records.recording import names_of
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.scoring.prediction_file import PredictedRecords, predicted_rows, write_predictions
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.judgement import Judged
 from diagnostics.training.classifier_file import save_classifier
 from diagnostics.training.realism import meaning_of_scores
-from diagnostics.training.severity import expected_area
 from diagnostics.training.splits import TEST, VALIDATION, SpecimenSplit
-from diagnostics.training.training import Training
 from siggen.dataset.reading import Dataset
 from siggen.file_writing import write_file
 from siggen.printable import markdown
@@ -226,7 +225,7 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
     identity, notes = set_identity(dataset), []
     save_classifier(training.classifier, table_settings(table), identity, folder)
     if training.network:
-        from diagnostics.training.cnn_files import save_network
+        from diagnostics.training.cnn import save_network
 
         save_network(training.network, folder / "cnn.safetensors")
     write_predictions(_predicted(training, table), identity, folder, training.split.kind)

@@ -12,13 +12,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from diagnostics.judging.alarms import (
+    BOOSTED,
+    CHOSEN,
+    CLASSIFIER,
+    FEWEST_SPECIMENS,
+    INDICATOR,
+    NETWORKS,
+    Detectors,
+    FoundSize,
+    JudgedDetector,
+    StateFound,
+)
 from diagnostics.page.style import WIDTH_IN, styled
 from diagnostics.page.wording import capitalised, counted, decimal, joined, limits, percent, percent_limits, rounded
 from diagnostics.records.state_classes import kind_name
 from diagnostics.report.detector_table import picked
 from diagnostics.report.indicator_figures import in_a_sentence
-from diagnostics.statistics.detector import Detector, FoundSize, StateFound
-from diagnostics.training.detectors import BOOSTED, CHOSEN, CLASSIFIER, FEWEST_SPECIMENS, INDICATOR, NETWORKS, Detectors
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -80,7 +90,7 @@ def answer_figure(found: Detectors) -> Figure | None:
     return figure
 
 
-def _draw_areas(axis: Any, detectors: dict[str, Detector], kinds: Sequence[str]) -> None:
+def _draw_areas(axis: Any, detectors: dict[str, JudgedDetector], kinds: Sequence[str]) -> None:
     axis.axhline(0.5, color="#8a97a3", linewidth=0.9)
     for family, detector in detectors.items():
         place = list(LOOKS).index(family)
@@ -108,7 +118,7 @@ def _draw_areas(axis: Any, detectors: dict[str, Detector], kinds: Sequence[str])
     axis.set_yticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "", "0.5", "", "1"])
 
 
-def _name_states(axis: Any, detectors: dict[str, Detector]) -> None:
+def _name_states(axis: Any, detectors: dict[str, JudgedDetector]) -> None:
     """Write the names of the states over their sizes, where they are few enough to stand beside each other."""
     states = next(iter(detectors.values())).states
     sizes = np.sort([state.area_mm2 for state in states.values()])
@@ -122,7 +132,7 @@ def _limits(states: Sequence[Any]) -> tuple[list[float], list[float]]:
     return [state.auc.low for state in states], [state.auc.high for state in states]
 
 
-def _draw_sizes(axis: Any, detectors: dict[str, Detector], kinds: Sequence[str]) -> None:
+def _draw_sizes(axis: Any, detectors: dict[str, JudgedDetector], kinds: Sequence[str]) -> None:
     """Draw from which size on nine of ten are found; every kind of damage has a row of its own for every family."""
     families = [family for family in LOOKS if family in detectors and detectors[family].sizes]
     for group, kind in enumerate(kinds):
@@ -161,7 +171,7 @@ def _draw_size(axis: Any, size: FoundSize, row: float, family: str) -> None:
     axis.plot(found.value, row, marker=marker, color=colour, markersize=5.5 if answer else 4)
 
 
-def _scale(axis: Any, detectors: Sequence[Detector]) -> None:
+def _scale(axis: Any, detectors: Sequence[JudgedDetector]) -> None:
     """Scale sizes logarithmically, with a few round numbers below them."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
@@ -239,7 +249,7 @@ def sham_sentence(found: Detectors) -> str:
     return said
 
 
-def size_sentence(best: Detector) -> str:
+def size_sentence(best: JudgedDetector) -> str:
     """Say of every kind of damage from which area on nine of ten records are found, or how many of its largest are."""
     if not best.sizes:
         return (
@@ -251,12 +261,12 @@ def size_sentence(best: Detector) -> str:
     return " ".join([*said, FOUND_MEANS])
 
 
-def _easiest(best: Detector) -> str:
+def _easiest(best: JudgedDetector) -> str:
     name = max(best.states, key=lambda state: best.states[state].auc.value)
     return f"The state {name} has the largest AUC: {decimal(best.states[name].auc.value)}."
 
 
-def _kind_sentence(best: Detector, kind: str, size: FoundSize | None, name: str) -> str:
+def _kind_sentence(best: JudgedDetector, kind: str, size: FoundSize | None, name: str) -> str:
     """Say what is found of one kind; where the smallest or none is, the share of its records says how sure that is."""
     states = {state: found for state, found in best.states.items() if found.kind == kind}
     smallest = min(states, key=lambda state: states[state].area_mm2)
@@ -301,7 +311,7 @@ def _share(state: StateFound) -> str:
     return f"{percent(state.share.value)} of records ({percent_limits(state.share)})"
 
 
-def detector_sentence(found: Detectors, best: Detector) -> str:
+def detector_sentence(found: Detectors, best: JudgedDetector) -> str:
     """Say what was chosen without a look at what it judges, and what each detector reaches by itself."""
     taken = picked(best.picks) if best.picks else f"always the {_title(best)}"
     first = (
@@ -322,18 +332,18 @@ def detector_sentence(found: Detectors, best: Detector) -> str:
     return " ".join([first, *said])
 
 
-def _other(family: str, detector: Detector) -> str:
+def _other(family: str, detector: JudgedDetector) -> str:
     where = f" on {counted(detector.specimens, 'test gearbox')} alone" if family == NETWORKS else ""
     return f"{_title(detector).removesuffix(ON_ALL)} {decimal(detector.every.value)} ({limits(detector.every)}){where}"
 
 
-def _title(detector: Detector) -> str:
+def _title(detector: JudgedDetector) -> str:
     if not detector.basis:
         return detector.title
     return f"{detector.title} ({in_a_sentence(detector.basis, detector.gears)})"
 
 
-def certainty_sentence(best: Detector) -> str:
+def certainty_sentence(best: JudgedDetector) -> str:
     """Say on what the numbers rest."""
     return (
         f"Judged on {counted(best.records, 'record')} of {counted(best.specimens, 'gearbox')}, each unseen by what "

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 
+from diagnostics.judging.judgement import TITLES, Judged
+from diagnostics.judging.of_split import Referenced, Training
 from diagnostics.page.html import Cell, table
 from diagnostics.page.tables import interval_cell
 from diagnostics.page.wording import counted
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.judgement import TITLES, Judged
-from diagnostics.training.referenced import Referenced
-from diagnostics.training.training import Training
 
 UNDEFINED = Interval(math.nan, math.nan, math.nan)
 

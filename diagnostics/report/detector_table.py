@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import math
 
+from diagnostics.judging.alarms import Detectors, FoundSize, JudgedDetector
+from diagnostics.judging.judgement import RMS_ALONE, TITLES, Judged
+from diagnostics.judging.of_split import Training
 from diagnostics.page.html import Cell, paragraph, table
 from diagnostics.page.tables import interval_cell, linked_cell
 from diagnostics.page.wording import capitalised, joined, percent, percent_limits, rounded, signed, signed_limits
 from diagnostics.report.indicator_figures import in_a_sentence
-from diagnostics.statistics.detector import Detector, FoundSize
-from diagnostics.statistics.judgement import RMS_ALONE, TITLES, Judged
-from diagnostics.training.detectors import Detectors
-from diagnostics.training.training import Training
 
 CAPTION = (
     "Detectors that give one alarm for all damage. Indicator and classifiers are judged on all gearboxes, each fold by "
@@ -130,7 +129,7 @@ def detector_table(found: Detectors) -> str:
     return table(head, rows, caption=CAPTION + (SHAM_CAPTION if shams else ""), sortable=True)
 
 
-def _row(detector: Detector, states: list[str], kinds: list[str], *, shams: bool) -> list[Cell]:
+def _row(detector: JudgedDetector, states: list[str], kinds: list[str], *, shams: bool) -> list[Cell]:
     beside = "beside a healthy record" if detector.referenced and "beside" not in detector.title else ""
     basis = in_a_sentence(detector.basis, detector.gears) if detector.basis else picked(detector.picks)
     small = ", ".join(part for part in (basis, beside) if part)
@@ -163,7 +162,7 @@ def picked(picks: tuple[tuple[str, int], ...]) -> str:
     return joined(said) if said else ""
 
 
-def _alarms(detector: Detector, name: str) -> Cell:
+def _alarms(detector: JudgedDetector, name: str) -> Cell:
     found = detector.states[name].share if name in detector.states else None
     if found is None:
         return Cell("–", value=math.nan)

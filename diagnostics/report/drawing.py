@@ -16,6 +16,7 @@ import numpy as np
 import siggen
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.registry import mesh_words
+from diagnostics.judging.of_split import Training
 from diagnostics.page.provenance import without_path
 from diagnostics.page.sideband_marks import PASSING, draw_marks, mark_handles, order_words, sideband_places, turn_words
 from diagnostics.page.style import SLANTED, new_figure, state_colours, state_ticks
@@ -25,7 +26,6 @@ from diagnostics.records.state_classes import HEALTHY
 from diagnostics.report import score_figures
 from diagnostics.report.examples import Example, ExampleSet, around_mesh, example_set
 from diagnostics.signal.spectrum import OrderSpectrum, strongest_harmonic
-from diagnostics.training.training import Training
 from siggen.dataset.reading import Dataset
 
 if TYPE_CHECKING:

@@ -9,14 +9,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.judging.alarms import (
+    CHANCE,
+    FALSE_ALARMS,
+    FEWEST_SPECIMENS,
+    FOUND,
+    Detectors,
+    FoundSize,
+    JudgedDetector,
+)
 from diagnostics.page.sideband_marks import mark_handles, order_words
 from diagnostics.page.style import state_colours, styled
 from diagnostics.page.wording import capitalised, counted, decimal, joined, limits, percent, percent_limits, rounded
 from diagnostics.records.state_classes import HEALTHY, kind_name
 from diagnostics.report.drawing import BEHIND_COLOUR, DECADES_SHOWN, around, draw_spectrum, strongest
 from diagnostics.report.examples import Example, ExampleSet
-from diagnostics.statistics.detector import CHANCE, FALSE_ALARMS, FOUND, Detector, FoundSize
-from diagnostics.training.detectors import FEWEST_SPECIMENS, Detectors
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,7 +38,7 @@ SIZE_IN, ORDERS = (5.6, 1.0, 1.0), 4.6
 
 
 def first_figure(
-    examples: ExampleSet, matrix: FeatureMatrix, classes: tuple[str, ...], best: Detector | None
+    examples: ExampleSet, matrix: FeatureMatrix, classes: tuple[str, ...], best: JudgedDetector | None
 ) -> Figure | None:
     """Return the order spectrum of one gearbox with every size of damage, over its healthy one; None without spectra.
 
@@ -43,7 +50,7 @@ def first_figure(
         With the labels of all records.
     classes : tuple of str
         States in their order, which gives them their colours.
-    best : Detector, optional
+    best : JudgedDetector, optional
         Says in which share of the records each state is found.
     """
     from matplotlib.figure import Figure
@@ -82,7 +89,7 @@ def _by_size(examples: list[Example], areas: dict[int, float]) -> list[Example]:
     return [ordered[place] for place in places]
 
 
-def _row_title(example: Example, areas: dict[int, float], best: Detector | None) -> str:
+def _row_title(example: Example, areas: dict[int, float], best: JudgedDetector | None) -> str:
     area = areas[example.record_id]
     size = f", {rounded(area)} mm²" if area > 0.0 else ""
     found = best.states.get(example.state) if best else None
@@ -122,7 +129,7 @@ def first_answer(found: Detectors) -> str:
     return " ".join(part for part in said if part)
 
 
-def _nothing_words(best: Detector) -> str:
+def _nothing_words(best: JudgedDetector) -> str:
     """Say that nothing is found, and what chance gives."""
     alarms = ""
     if best.share is not None:
@@ -133,7 +140,7 @@ def _nothing_words(best: Detector) -> str:
     return said
 
 
-def _kinds_words(best: Detector) -> list[str]:
+def _kinds_words(best: JudgedDetector) -> list[str]:
     """Say of every kind of damage what is found, what is told alone, and what is not; what is found comes first."""
     kinds = list(dict.fromkeys(state.kind for state in best.states.values()))
     members = {kind: [state for state, found in best.states.items() if found.kind == kind] for kind in kinds}
@@ -152,7 +159,7 @@ def _kinds_words(best: Detector) -> list[str]:
     return [*said, f"Further kinds of damage: {more}."] if more > 0 else said
 
 
-def _reached_words(best: Detector, size: FoundSize, members: list[str], name: str) -> str:
+def _reached_words(best: JudgedDetector, size: FoundSize, members: list[str], name: str) -> str:
     """Say from which size on a kind of damage is found."""
     limit = f"{rounded(size.smallest_mm2 if size.is_bound else size.area_mm2.value)}{SPACE}mm²"
     if size.is_bound:
@@ -164,7 +171,7 @@ def _reached_words(best: Detector, size: FoundSize, members: list[str], name: st
     return f"**{name} from {limit} on**{spread} is found in **nine of ten records**."
 
 
-def _told_words(best: Detector, members: list[str], name: str) -> str:
+def _told_words(best: JudgedDetector, members: list[str], name: str) -> str:
     """Say which states of a kind are found, which are told from healthy alone, and which are not."""
     order = sorted(members, key=lambda state: -best.states[state].area_mm2)
     shares = {state: found.share.value for state in order if (found := best.states[state]).share and best.tells(state)}
@@ -182,13 +189,13 @@ def _told_words(best: Detector, members: list[str], name: str) -> str:
     return f"{said} {_lost_words(best, lost)}" if lost else said
 
 
-def _lost_words(best: Detector, states: Sequence[str] | None = None) -> str:
+def _lost_words(best: JudgedDetector, states: Sequence[str] | None = None) -> str:
     """Name the states that are not told from healthy, of all or of some."""
     lost = [state for state in states or best.states if not best.tells(state)]
     return f"Not told from healthy: **{_sizes(best, lost)}**." if lost else ""
 
 
-def _below_chance(best: Detector) -> str:
+def _below_chance(best: JudgedDetector) -> str:
     """Call out intervals that lie wholly below chance; empty without one."""
     asked = {"all damage together": best.every, **{name: state.auc for name, state in best.states.items()}}
     below = [f"{name} ({limits(auc)})" for name, auc in asked.items() if auc.high < CHANCE][:MOST_SIZES]
@@ -214,7 +221,7 @@ def _next_step(found: Detectors) -> str:
     return "Next: more gearboxes or larger damage; a healthy record of the same gearbox tells no more."
 
 
-def detector_words(best: Detector) -> str:
+def detector_words(best: JudgedDetector) -> str:
     """Return what a detector is: of one that is chosen for each group of gearboxes, what was chosen most often."""
     if not best.picks:
         return best.title
@@ -222,14 +229,14 @@ def detector_words(best: Detector) -> str:
     return most if len(best.picks) == 1 else f"mostly {most}"
 
 
-def _sizes(best: Detector, states: Sequence[str]) -> str:
+def _sizes(best: JudgedDetector, states: Sequence[str]) -> str:
     """Name a few states with their sizes, and how many more there are."""
     named = [_size(best, state) for state in states[:MOST_SIZES]]
     more = len(states) - len(named)
     return joined([*named, f"{more} more"] if more else named)
 
 
-def _size(best: Detector, state: str) -> str:
+def _size(best: JudgedDetector, state: str) -> str:
     area_mm2 = best.states[state].area_mm2
     return f"{state} ({rounded(area_mm2)}{SPACE}mm²)" if area_mm2 > 0.0 else state
 

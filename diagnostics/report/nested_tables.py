@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from diagnostics.judging.nested_folds import KNOWN_ACCEPTED, Nested, Stranger
 from diagnostics.page.html import Cell, paragraph, table
 from diagnostics.page.wording import counted, decimal, joined
 from diagnostics.records.record_classes import STATE
 from diagnostics.report.confusion import confusion_table
-from diagnostics.training.nested_folds import KNOWN_ACCEPTED, Nested, Stranger
 
 MOST_NAMES = 3
 """Names shown of what a class that training lacked is called."""

@@ -22,6 +22,10 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.ranking_table import ranking_table
 from diagnostics.indicators.table import RecordTable
+from diagnostics.judging.alarms import Detectors, judged_detectors
+from diagnostics.judging.judgement import TITLES
+from diagnostics.judging.of_split import NetworkOptions, Training, train_models, training_metrics
+from diagnostics.judging.sets import OtherSet, checked_table, measured_table, other_table
 from diagnostics.page.provenance import without_path
 from diagnostics.page.style import png_bytes, styled
 from diagnostics.page.wording import counted
@@ -42,14 +46,8 @@ from diagnostics.report.report_page import ANSWER, CAPTION, FIRST, Reported, rep
 from diagnostics.report.sentences import summary
 from diagnostics.scoring.score import Scores, score
 from diagnostics.statistics.assessment import AssessmentSettings
-from diagnostics.statistics.judgement import TITLES
 from diagnostics.statistics.separability import Separability, separability
-from diagnostics.training.detectors import Detectors, judged_detectors
-from diagnostics.training.network_training import NetworkOptions
-from diagnostics.training.other_set import OtherSet
 from diagnostics.training.realism import is_error_free
-from diagnostics.training.training import Training, train_models, training_metrics
-from diagnostics.training.training_sets import checked_table, measured_table, other_table
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, how_to_install
 from siggen.file_writing import write_file

@@ -13,6 +13,9 @@ import numpy as np
 
 from diagnostics.explore.look import Look
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.judging.alarms import Detectors
+from diagnostics.judging.judgement import TITLES
+from diagnostics.judging.of_split import Training
 from diagnostics.page import html, tables
 from diagnostics.page.html import Cell, table
 from diagnostics.page.provenance import origin_sentence, provenance
@@ -38,11 +41,8 @@ from diagnostics.report.sentences import (
 )
 from diagnostics.report.your_scores import your_scores
 from diagnostics.scoring.score import Scores
-from diagnostics.statistics.judgement import TITLES
 from diagnostics.statistics.separability import Separability
-from diagnostics.training.detectors import Detectors
 from diagnostics.training.realism import is_error_free, meaning_of_scores
-from diagnostics.training.training import Training
 from siggen.dataset.reading import Dataset
 
 MOST_RECORDS = 100

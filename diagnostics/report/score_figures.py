@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from diagnostics.judging.judgement import TITLES, Judged
+from diagnostics.judging.of_split import Training
 from diagnostics.page.style import new_figure
-from diagnostics.statistics.judgement import TITLES, Judged
-from diagnostics.training.training import Training
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from diagnostics.judging.judgement import NETWORK, RMS_ALONE, SATURATED, TITLES, VALIDATION_AUROC, Comparison, Judged
+from diagnostics.judging.of_split import Training
 from diagnostics.page.wording import (
     capitalised,
     counted,
@@ -20,12 +22,9 @@ from diagnostics.page.wording import (
 )
 from diagnostics.records.record_classes import FAULT, STATE
 from diagnostics.report.indicator_figures import in_a_sentence
-from diagnostics.statistics.comparison import SATURATED, Comparison
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.judgement import NETWORK, RMS_ALONE, TITLES, VALIDATION_AUROC, Judged
 from diagnostics.statistics.separability import Separability, best_by_state
 from diagnostics.training.realism import meaning_of_scores
-from diagnostics.training.training import Training
 
 CHANCE_MARGIN = 0.1
 """A mean macro-AUROC under permuted labels that is farther from 0.5 than this is called suspicious."""

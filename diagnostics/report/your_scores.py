@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from diagnostics.judging.judgement import TITLES
 from diagnostics.page.html import Cell, paragraph, table
 from diagnostics.page.tables import interval_cell
 from diagnostics.page.wording import capitalised, counted
 from diagnostics.scoring.score import Scores
-from diagnostics.statistics.judgement import TITLES
 
 
 def your_scores(scores: Scores | None) -> list[str]:

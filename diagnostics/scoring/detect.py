@@ -11,8 +11,7 @@ from diagnostics.records.state_classes import SHAM
 from diagnostics.scoring.grade import probabilities
 from diagnostics.scoring.task import Columns, Measure, Taken, Task
 from diagnostics.scoring.truth import Truth
-from diagnostics.statistics.detection import fewest_gearboxes
-from diagnostics.statistics.evaluation import weighted_auc
+from diagnostics.statistics.evaluation import fewest_gearboxes, weighted_auc
 from siggen.dataset.reading import Dataset
 
 DAMAGE = "damage"

@@ -16,6 +16,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from diagnostics.judging.judgement import TITLES
 from diagnostics.records.record_classes import STATE
 from diagnostics.scoring.prediction_file import (
     CLASSIFIER,
@@ -32,7 +33,6 @@ from diagnostics.scoring.tasks import TASKS, truth_of
 from diagnostics.scoring.truth import Truth
 from diagnostics.statistics.evaluation import RESAMPLES, Interval, bootstrap_weights, interval
 from diagnostics.statistics.judged_records import LARGEST_BLOCK
-from diagnostics.statistics.judgement import TITLES
 from diagnostics.statistics.scores import area_interval
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, counted

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from diagnostics.base.extras import require_packages
+from diagnostics.judging.judgement import TITLES
 from diagnostics.scoring.score_row import ScoreRow
-from diagnostics.statistics.judgement import TITLES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

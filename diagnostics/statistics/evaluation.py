@@ -177,6 +177,11 @@ def _own_pairs(
     return np.bincount(owner, won, specimens), np.bincount(owner, minlength=specimens).astype(np.float64)
 
 
+def fewest_gearboxes(positive: np.ndarray, specimen: np.ndarray) -> int:
+    """Return the gearboxes on the side, (n,) bool, that has fewer: as many the limits of an AUC count."""
+    return min(int(np.unique(specimen[positive == side]).size) for side in (True, False))
+
+
 def column_auc(values: np.ndarray, positive: np.ndarray) -> np.ndarray:
     """Return the AUC of every column, pairs of one gearbox among them: what a choice may rest on.
 

@@ -31,8 +31,10 @@ from diagnostics.statistics.evaluation import (
     balanced_accuracy,
     bootstrap_weights,
     confusion_matrix,
+    fewest_gearboxes,
     interval,
     macro_auroc,
+    weighted_auc,
 )
 
 
@@ -53,6 +55,11 @@ def area_interval(samples: np.ndarray, specimens: int) -> Interval:
     highest_low, lowest_high = clopper_pearson(1.0, specimens)[0], clopper_pearson(0.0, specimens)[1]
     low, high = min(low, highest_low), max(high, lowest_high)
     return Interval(found.value, float(np.fmin(low, found.low)), float(np.fmax(high, found.high)))
+
+
+def area(values: np.ndarray, positive: np.ndarray, weights: np.ndarray, specimen: np.ndarray) -> Interval:
+    """Return the AUC between records of different gearboxes with its limits; parameters as of `weighted_auc`."""
+    return area_interval(weighted_auc(values, positive, weights, specimen), fewest_gearboxes(positive, specimen))
 
 
 def effective_size(value: float, resamples: np.ndarray, specimens: int) -> float:

@@ -10,7 +10,7 @@ from types import ModuleType
 from typing import Any
 
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.training.baselines import FeatureClassifier
+from diagnostics.training.feature_classifier import FeatureClassifier
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
 

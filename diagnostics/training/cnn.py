@@ -3,24 +3,33 @@
 An average is periodic, so every convolution is padded with the other end of the revolution, and mean, spread and
 largest value over the angle pool it: which tooth is damaged does not matter. Every row is divided by its level, and the
 levels go to the last layer as logarithms. Source: derived; convolutional networks are standard literature.
+
+On disk it is a safetensors file, which cannot execute anything; classes, channels, identity of the set and temperature
+stand in its metadata.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from math import isfinite
+from pathlib import Path
 
 import numpy as np
 import torch
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import load_file, save
 from torch import nn
 
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.statistics.calibration import calibrated
-from diagnostics.statistics.evaluation import Predictions
-from diagnostics.training.average_rows import AveragedRecords, average_rows, moved
+from diagnostics.training.average_rows import ROWS, AveragedRecords, average_rows, moved
+from diagnostics.training.loop import LoopSettings, fit_network, seeded
 from diagnostics.training.splits import SpecimenSplit
+from siggen.errors import UsageError
+from siggen.file_writing import write_file
+
+FORMAT = "siggen-diagnostics network on averages 1"
 
 LAYERS = ((16, 31, 4), (24, 7, 1), (32, 5, 1))
 """Width, kernel and stride of the convolutions; all but the last are followed by a maximum over two steps."""
@@ -60,31 +69,35 @@ class NetworkSettings:
 
 @dataclass(frozen=True, slots=True)
 class TrainedNetwork:
-    """The network at its best epoch, and how it got there.
+    """The network at its best epoch, what it takes, and how it got there.
 
     Attributes
     ----------
     network : CircularNetwork
         In evaluation mode.
-    classes : tuple of str
-        States in the order of the outputs.
+    classes, channels : tuple of str
+        States in the order of the outputs; channels in the order of the rows, see `average_rows`.
     best_epoch, epochs : int
-        Epoch whose weights were kept, and epochs run.
+        Epoch whose weights were kept, and epochs run; 0 of one that was read.
     validation_loss : tuple of float
         Cross entropy by epoch; empty without validation specimens.
     note : str
         What was not as it should be, or empty.
     temperature : float
-        Applied to the probabilities of a record; 1 leaves them.
+        Applied to the probabilities of a record, or to the mean over a recording's pieces; 1 leaves them.
+    identity : str
+        Identity of the set it was trained on.
     """
 
     network: CircularNetwork
     classes: tuple[str, ...]
-    best_epoch: int
-    epochs: int
-    validation_loss: tuple[float, ...]
-    note: str
+    channels: tuple[str, ...]
+    best_epoch: int = 0
+    epochs: int = 0
+    validation_loss: tuple[float, ...] = ()
+    note: str = ""
     temperature: float = 1.0
+    identity: str = ""
 
 
 class CircularConvolution(nn.Module):  # type: ignore[misc]  # the type checker does not read torch
@@ -154,28 +167,34 @@ def train_network(
         Called after every epoch.
     """
     chosen = settings or NetworkSettings()
-    with torch.random.fork_rng(devices=seeded_devices(chosen.device)), one_thread():
-        torch.manual_seed(seed)
+    learn, validation = np.flatnonzero(split.train), np.flatnonzero(split.validation)
+    with seeded(seed, chosen.device):
         network = CircularNetwork(records.rows, len(split.classes))
-        _set_levels(network, records.chosen(np.flatnonzero(split.train)))
+        _set_levels(network, records.chosen(learn))
         network.to(chosen.device)
-        return _fit(network, records, target, split, seed, chosen, advance)
 
+        def batches(epoch: int) -> Iterator[torch.Tensor]:
+            rng = generator(seed, Purpose.AVERAGES, epoch)
+            order = rng.permutation(learn)
+            for start in range(0, order.size, chosen.batch):
+                batch = order[start : start + chosen.batch]
+                if batch.size > 1 or order.size == 1:  # batch normalisation is undefined on a single record
+                    rows = torch.from_numpy(average_rows(moved(records.chosen(batch), rng, chosen.gain_db)))
+                    said, truth = network(rows.to(chosen.device)), torch.from_numpy(target[batch]).to(chosen.device)
+                    yield nn.functional.cross_entropy(said, truth)
 
-def seeded_devices(device: str) -> list[int]:
-    """Return the devices whose generators are seeded here and given back as they were, besides the CPU's."""
-    return [torch.cuda.current_device()] if torch.device(device).type == "cuda" else []
-
-
-@contextmanager
-def one_thread() -> Iterator[None]:
-    """Sum in one order whatever the number of cores; small layers gain nothing from more threads anyway."""
-    before = torch.get_num_threads()
-    torch.set_num_threads(1)
-    try:
-        yield
-    finally:
-        torch.set_num_threads(before)
+        seen = torch.from_numpy(average_rows(records.chosen(validation))) if validation.size else None
+        truth = torch.from_numpy(target[validation])
+        best, epochs, losses = fit_network(
+            network,
+            batches,
+            None if seen is None else lambda: float(nn.functional.cross_entropy(_logits(network, seen), truth)),
+            LoopSettings(chosen.most_epochs, chosen.learning_rate, chosen.weight_decay, chosen.patience),
+            advance,
+        )
+    network.to("cpu")
+    note = _training_note(losses, epochs, target[learn], target[validation] if validation.size else None)
+    return TrainedNetwork(network, split.classes, records.channels, best, epochs, losses, note)
 
 
 def _set_levels(network: CircularNetwork, train: AveragedRecords) -> None:
@@ -183,37 +202,6 @@ def _set_levels(network: CircularNetwork, train: AveragedRecords) -> None:
     levels = np.log(np.sqrt(np.square(average_rows(train), dtype=np.float64).mean(axis=2)) + SMALLEST_LEVEL)
     network.level_mean.copy_(torch.from_numpy(levels.mean(axis=0)))
     network.level_scale.copy_(torch.from_numpy(np.maximum(levels.std(axis=0), 1e-3)))
-
-
-def _fit(
-    network: CircularNetwork,
-    records: AveragedRecords,
-    target: np.ndarray,
-    split: SpecimenSplit,
-    seed: int,
-    settings: NetworkSettings,
-    advance: Callable[[], None] | None,
-) -> TrainedNetwork:
-    optimiser = torch.optim.AdamW(network.parameters(), lr=settings.learning_rate, weight_decay=settings.weight_decay)
-    train, validation = np.flatnonzero(split.train), np.flatnonzero(split.validation)
-    judged = torch.from_numpy(average_rows(records.chosen(validation))) if validation.size else None
-    losses: list[float] = []
-    best_epoch, best_weights = 0, _weights(network)
-    for epoch in range(1, settings.most_epochs + 1):
-        _run_epoch(network, optimiser, records, target, train, generator(seed, Purpose.AVERAGES, epoch), settings)
-        if advance:
-            advance()
-        if judged is not None:
-            truth = torch.from_numpy(target[validation])
-            losses.append(float(nn.functional.cross_entropy(_logits(network, judged), truth)))
-        if judged is None or losses[-1] <= min(losses):
-            best_epoch, best_weights = epoch, _weights(network)
-        elif epoch - best_epoch >= settings.patience:
-            break
-    network.load_state_dict(best_weights)
-    network.to("cpu").eval()
-    note = _training_note(losses, epoch, target[train], target[validation] if validation.size else None)
-    return TrainedNetwork(network, split.classes, best_epoch, epoch, tuple(losses), note)
 
 
 def _training_note(losses: Sequence[float], epochs: int, train: np.ndarray, validation: np.ndarray | None) -> str:
@@ -231,34 +219,7 @@ def _training_note(losses: Sequence[float], epochs: int, train: np.ndarray, vali
     )
 
 
-def _run_epoch(
-    network: CircularNetwork,
-    optimiser: torch.optim.Optimizer,
-    records: AveragedRecords,
-    target: np.ndarray,
-    train: np.ndarray,
-    rng: np.random.Generator,
-    settings: NetworkSettings,
-) -> None:
-    network.train()
-    order = rng.permutation(train)
-    for start in range(0, order.size, settings.batch):
-        batch = order[start : start + settings.batch]
-        if batch.size < 2 and order.size > 1:  # batch normalisation is undefined on a single record
-            continue
-        rows = average_rows(moved(records.chosen(batch), rng, settings.gain_db))
-        optimiser.zero_grad()
-        logits = network(torch.from_numpy(rows).to(settings.device))
-        nn.functional.cross_entropy(logits, torch.from_numpy(target[batch]).to(settings.device)).backward()
-        optimiser.step()
-
-
-def _weights(network: CircularNetwork) -> dict[str, torch.Tensor]:
-    return {name: value.detach().clone() for name, value in network.state_dict().items()}
-
-
 def _logits(network: CircularNetwork, rows: torch.Tensor) -> torch.Tensor:
-    network.eval()
     with torch.no_grad():
         return network(rows.to(network.level_mean.device)).float().cpu()
 
@@ -271,21 +232,40 @@ def network_probability(network: CircularNetwork, records: AveragedRecords) -> n
     return np.asarray(torch.softmax(_logits(network, rows).double(), dim=1).numpy())
 
 
-def network_predictions(
-    trained: TrainedNetwork, records: AveragedRecords, chosen: np.ndarray, target: np.ndarray, specimen: np.ndarray
-) -> Predictions:
-    """Return the probabilities of some records at the network's temperature.
+def save_network(trained: TrainedNetwork, path: Path) -> None:
+    """Write weights and facts as safetensors; the facts are JSON under the metadata key `facts`."""
+    facts = {name: getattr(trained, name) for name in ("classes", "channels", "identity", "temperature")}
+    weights = {name: value.contiguous() for name, value in trained.network.state_dict().items()}
+    write_file(path, save(weights, metadata={"format": FORMAT, "facts": json.dumps(facts)}))
 
-    Parameters
-    ----------
-    trained : TrainedNetwork
-        The network to judge.
-    records : AveragedRecords
-        All records of the set.
-    chosen : (k,) int
-        Positions of the records to predict.
-    target, specimen : (records,) int
-        True state and specimen of every record of the set.
+
+def load_network(path: Path) -> TrainedNetwork:
+    """Read a network written by `save_network`; nothing in the file is executed.
+
+    Raises
+    ------
+    UsageError
+        If the file is not one.
     """
-    probability = network_probability(trained.network, records.chosen(chosen))
-    return calibrated(Predictions(trained.classes, target[chosen], probability, specimen[chosen]), trained.temperature)
+    try:
+        with safe_open(path, framework="pt") as file:
+            metadata = file.metadata() or {}
+    except (OSError, SafetensorError) as error:
+        raise UsageError(f"{path}: cannot be read as safetensors ({error})") from error
+    if metadata.get("format") != FORMAT:
+        raise UsageError(f"{path}: received format {metadata.get('format')!r}; allowed is {FORMAT!r}")
+    try:
+        facts = json.loads(metadata["facts"])
+        classes, channels, temperature = tuple(facts["classes"]), tuple(facts["channels"]), float(facts["temperature"])
+        network = CircularNetwork(ROWS * len(channels), len(classes))
+        network.load_state_dict(load_file(path))
+        identity = str(facts["identity"])
+    except (KeyError, TypeError, ValueError, RuntimeError, SafetensorError) as error:
+        text = str(error).splitlines()[0]
+        raise UsageError(f"{path}: received facts or weights of another schema ({text}); train again") from error
+    infinite = [name for name, value in network.state_dict().items() if not bool(torch.isfinite(value).all())]
+    if infinite:
+        raise UsageError(f"{path}: received {infinite[0]} that is not finite; the file is damaged: train again")
+    if not (isfinite(temperature) and temperature > 0.0):
+        raise UsageError(f"{path}: received temperature {temperature}; allowed: finite and above 0; train again")
+    return TrainedNetwork(network.eval(), classes, channels, temperature=temperature, identity=identity)

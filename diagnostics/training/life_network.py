@@ -8,7 +8,7 @@ start included. Source: gated recurrent units (Cho et al. 2014), standard litera
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,8 @@ from torch import nn
 
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.statistics.life_scores import QUANTILES
-from diagnostics.training.cnn import SMALLEST_LEVEL, CircularConvolution, one_thread
+from diagnostics.training.cnn import SMALLEST_LEVEL, CircularConvolution
+from diagnostics.training.loop import LoopSettings, fit_network, seeded
 
 CONVOLUTIONS = ((4, 31, 4), (8, 7, 2))
 """Width, kernel and stride, each followed by a maximum over two steps."""
@@ -90,11 +91,9 @@ def network_quantiles(known: LifeSequences, seed: int, train: np.ndarray, test: 
 
     Gearboxes are in one of both alone. The same seed gives the same numbers on one machine.
     """
-    with torch.random.fork_rng(devices=[]), one_thread():
-        torch.manual_seed(seed)
+    with seeded(seed):
         network = LifeNetwork(known.rows.shape[1])
         _fit(network, known, known.units(train & np.isfinite(known.rul_h)), seed)
-        network.eval()
         with torch.no_grad():
             return np.concatenate([_quantiles(network, known, [unit]).numpy() for unit in known.units(test)])
 
@@ -103,30 +102,18 @@ def _fit(network: LifeNetwork, known: LifeSequences, units: list[np.ndarray], se
     chosen = generator(seed, Purpose.LIFE_NETWORK).permutation(len(units))
     choosing = [units[k] for k in chosen[::CHOOSING]]
     learning = [units[k] for k in np.setdiff1d(chosen, chosen[::CHOOSING])]
-    optimiser = torch.optim.AdamW(network.parameters(), lr=LEARNING_RATE, weight_decay=WEIGHT_DECAY)
-    best, weights = np.inf, _weights(network)
-    for step in range(STEPS + 1):
-        if step % EVERY == 0:
-            loss = _judged(network, known, choosing)
-            best, weights = (loss, _weights(network)) if loss < best else (best, weights)
-        if step < STEPS and learning:
-            draws = generator(seed, Purpose.LIFE_NETWORK, 1 + step)
-            own = [learning[k] for k in draws.permutation(len(learning))[:BATCH]]
-            network.train()
-            optimiser.zero_grad()
-            _loss(network, known, own).backward()
-            optimiser.step()
-    network.load_state_dict(weights)
 
+    def batches(step: int) -> Iterator[torch.Tensor]:
+        if learning:
+            order = generator(seed, Purpose.LIFE_NETWORK, step).permutation(len(learning))
+            yield _loss(network, known, [learning[k] for k in order[:BATCH]])
 
-def _weights(network: LifeNetwork) -> dict[str, torch.Tensor]:
-    return {name: value.detach().clone() for name, value in network.state_dict().items()}
+    def judged() -> float:
+        return float(_loss(network, known, choosing)) if choosing else 0.0
 
-
-def _judged(network: LifeNetwork, known: LifeSequences, units: list[np.ndarray]) -> float:
-    network.eval()
-    with torch.no_grad():
-        return float(_loss(network, known, units)) if units else 0.0
+    fit_network(
+        network, batches, judged, LoopSettings(STEPS, LEARNING_RATE, WEIGHT_DECAY, every=EVERY, from_start=True)
+    )
 
 
 def _loss(network: LifeNetwork, known: LifeSequences, units: list[np.ndarray]) -> torch.Tensor:

@@ -20,8 +20,9 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.table import record_table
 from diagnostics.statistics.evaluation import weighted_auc
 from diagnostics.training.average_rows import averaged_records
-from diagnostics.training.baselines import state_index, train_classifier
+from diagnostics.training.classifiers import LogisticBaseline, trained
 from diagnostics.training.cnn import network_probability, train_network
+from diagnostics.training.feature_classifier import state_index
 from diagnostics.training.splits import SpecimenSplit, specimen_split
 
 FOLDS, SEEDS = 3, 5
@@ -51,13 +52,13 @@ def main(folder: str) -> None:
     linear, network = [], []
     for split in splits(matrix):
         truth, test = state_index(matrix, split.classes), np.flatnonzero(split.test)
-        model = train_classifier(matrix, split)
+        model = trained(LogisticBaseline(), matrix, split)
         linear.append(detection(model.probability(matrix.values[test]), truth, split, matrix))
         for seed in range(SEEDS):
-            trained = train_network(averages, truth, split, seed)
-            probability = network_probability(trained.network, averages.chosen(test))
+            found = train_network(averages, truth, split, seed)
+            probability = network_probability(found.network, averages.chosen(test))
             network.append(detection(probability, truth, split, matrix))
-            print(f"fold {len(linear)}, seed {seed}: {network[-1]:.3f}, epoch {trained.best_epoch} of {trained.epochs}")
+            print(f"fold {len(linear)}, seed {seed}: {network[-1]:.3f}, epoch {found.best_epoch} of {found.epochs}")
     means = np.array(network).reshape(FOLDS, SEEDS).mean(axis=0)
     print(f"1-D network: {means.mean():.3f}, standard deviation over seeds {means.std(ddof=1):.3f}")
     print(f"logistic regression: {np.mean(linear):.3f}, folds {', '.join(f'{area:.3f}' for area in linear)}")

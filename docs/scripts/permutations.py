@@ -21,12 +21,12 @@ import numpy as np
 
 import siggen
 from diagnostics.audit.bank_detections import chance_limit
-from diagnostics.audit.held_out import Attacker
 from diagnostics.audit.measured_set import MeasuredSet, measured_set, reference_records
 from diagnostics.audit.residual_lines import line_array, residual_lines
 from diagnostics.audit.separability_findings import separability_findings
 from diagnostics.audit.signal_attackers import attackers_on, signal_attackers
 from diagnostics.base.single_thread import single_thread
+from diagnostics.judging.evaluation import Entry
 from diagnostics.statistics.scores import clopper_pearson
 from siggen.keys.column import Role
 
@@ -95,7 +95,7 @@ class Prepared:
         pairs = kept(found, self.first)
         self.beside = attackers_on(pairs, residual[self.first] - known, known, 0, lambda: None)
 
-    def bank(self, found: MeasuredSet) -> list[Attacker]:
+    def bank(self, found: MeasuredSet) -> list[Entry]:
         """Return the attackers for the references that the states of a set give."""
         reference = reference_records(found)
         place = np.full(reference.size, -1)
@@ -104,7 +104,7 @@ class Prepared:
         beside = [
             replace(
                 each,
-                attack=lambda trial, each=each: each.attack(replace(trial, rows=place[trial.rows])),
+                X=each.X[place],
                 usable=(place >= 0) & each.usable[place],
             )
             for each in self.beside
@@ -112,7 +112,7 @@ class Prepared:
         return [*self.alone, *(beside if (place >= 0).any() else [])]
 
 
-def p_value(found: MeasuredSet, bank: list[Attacker], state: str, turn: int) -> float:
+def p_value(found: MeasuredSet, bank: list[Entry], state: str, turn: int) -> float:
     """Return the p-value of the bank on a state, with folds and permutations of their own in every turn."""
     return chance_limit(found, bank, turn, lambda: None).states[state].p_value
 

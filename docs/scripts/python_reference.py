@@ -132,8 +132,8 @@ DIAGNOSTICS = {
     "[your own classifier](../understand/baselines.md#your-own-classifier).": {
         "diagnostics.table": "indicators.classifier_table", "diagnostics.averages": "training.average_rows",
         "FeatureMatrix": "indicators.matrix", "diagnostics.windows": "loader.window_arrays",
-        "Windows": "loader.window_arrays", "diagnostics.LogisticBaseline": "training.estimators",
-        "diagnostics.BoostingBaseline": "training.estimators", "diagnostics.score": "scoring.score",
+        "Windows": "loader.window_arrays", "diagnostics.LogisticBaseline": "training.classifiers",
+        "diagnostics.BoostingBaseline": "training.classifiers", "diagnostics.score": "scoring.score",
         "Scores": "scoring.score", "ScoreRow": "scoring.score_row", "diagnostics.open_benchmark": "scoring.benchmark",
         "diagnostics.score_benchmark": "scoring.benchmark_scores",
     },

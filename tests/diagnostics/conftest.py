@@ -23,7 +23,7 @@ from tests.shared import shared
 
 if TYPE_CHECKING:
     from diagnostics.indicators.table import RecordTable
-    from diagnostics.training.training import Training
+    from diagnostics.judging.of_split import Training
 
 STATES = ("healthy", "slight", "severe")
 DEPTH = {"healthy": 0.0, "slight": 0.15, "severe": 0.5}
@@ -196,8 +196,7 @@ def features(measured: RecordTable) -> pa.Table:
 @pytest.fixture(scope="session")
 def training(dataset: MemoryDataset, features: pa.Table, tmp_path_factory: pytest.TempPathFactory) -> Training:
     """What training without networks makes of the separable set."""
-    from diagnostics.training.network_training import NetworkOptions
-    from diagnostics.training.training import train_models
+    from diagnostics.judging.of_split import NetworkOptions, train_models
 
     options = NetworkOptions(cnn=False)
     return shared(tmp_path_factory, "training", lambda: train_models(dataset, features, 0, network=options))
@@ -224,17 +223,17 @@ def make_dataset() -> Callable[..., MemoryDataset]:
 @pytest.fixture(autouse=True, scope="session")
 def light_classifiers() -> Iterator[None]:
     """Ten trees and two strengths of the penalty, which tell these sets apart as well: all take half of a report."""
-    from diagnostics.training import baselines, boosting, life_baselines
+    from diagnostics.training import classifiers, life_baselines
 
-    choose = baselines._chosen_strength
+    choose = classifiers._chosen_strength
 
-    def of_two(matrix: Any, split: Any, truth: np.ndarray, strengths: Sequence[float], *given: Any) -> Any:
-        return choose(matrix, split, truth, strengths[2::2] or strengths, *given)
+    def of_two(values: Any, truth: Any, gearbox: Any, strengths: Sequence[float], **given: Any) -> Any:
+        return choose(values, truth, gearbox, strengths[2::2] or strengths, **given)
 
-    model, of_life = boosting._model, life_baselines._model
+    model, of_life = classifiers._model, life_baselines._model
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(baselines, "_chosen_strength", of_two)
-        patch.setattr(boosting, "_model", lambda trees, seed: model(min(trees, 10), seed))
+        patch.setattr(classifiers, "_chosen_strength", of_two)
+        patch.setattr(classifiers, "_model", lambda trees, seed: model(min(trees, 10), seed))
         patch.setattr(life_baselines, "_model", lambda q, seed: of_life(q, seed).set_params(max_iter=10))
         yield
 

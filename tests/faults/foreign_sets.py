@@ -143,8 +143,8 @@ def _explore(folder: Path, out: Path) -> None:
 def _report(folder: Path, _out: Path) -> None:
     """Read all that a report reads of a set; what follows are minutes of training on the table made here."""
     from diagnostics.base.progress import silent_stage
+    from diagnostics.judging.sets import open_sets, set_table
     from diagnostics.report.report import clipping_notes
-    from diagnostics.training.training_sets import open_sets, set_table
 
     dataset, _ = open_sets(folder, None, ())
     _done((set_table(dataset, silent_stage), clipping_notes(dataset)))

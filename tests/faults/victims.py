@@ -20,10 +20,9 @@ def small_model(dataset_folder: Path, folder: Path) -> Path:
     """Train the classifiers on indicators, without the network, and return their folder."""
     import siggen
     from diagnostics.base.progress import silent_stage
+    from diagnostics.judging.of_split import NetworkOptions, train_models
+    from diagnostics.judging.sets import set_table
     from diagnostics.prediction.saved_models import save_models
-    from diagnostics.training.network_training import NetworkOptions
-    from diagnostics.training.training import train_models
-    from diagnostics.training.training_sets import set_table
 
     dataset = siggen.open(dataset_folder)
     table = set_table(dataset, silent_stage)

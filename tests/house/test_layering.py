@@ -23,8 +23,8 @@ SIGGEN_ROOMS = (
     "columns", "record", "dataset", "engines", "sets", "views", "publication", "library", "cli",
 )  # fmt: skip
 DIAGNOSTICS_ROOMS = (
-    "base", "signal", "records", "indicators", "statistics", "scoring", "loader", "training", "recordings", "page",
-    "prediction", "machine", "audit", "bench", "calibration", "explore", "report", "cli",
+    "base", "signal", "records", "indicators", "statistics", "loader", "training", "judging", "scoring", "recordings",
+    "page", "prediction", "machine", "audit", "bench", "calibration", "explore", "report", "cli",
 )  # fmt: skip
 ROOMS = {"siggen": SIGGEN_ROOMS, "diagnostics": DIAGNOSTICS_ROOMS}
 PHYSICS = ("siggen.gears", "siggen.dynamics", "siggen.sensing")

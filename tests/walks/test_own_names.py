@@ -17,7 +17,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import siggen
-from diagnostics.training.detectors import INDICATOR
+from diagnostics.judging.alarms import INDICATOR
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.config import yaml_text

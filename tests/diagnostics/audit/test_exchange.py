@@ -8,10 +8,9 @@ from typing import cast
 import numpy as np
 import pytest
 
-from diagnostics.audit.bank_detections import bank_maxima, permuted
-from diagnostics.audit.column_attackers import best_column
-from diagnostics.audit.held_out import dealt_folds
+from diagnostics.audit.bank_detections import DESIGN, bank_maxima, permuted
 from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks, reference_records
+from diagnostics.judging.learners import best_column
 
 GEARBOXES, ORDERS, SETS, PERMUTATIONS = 24, 10, 400, 39
 SPREAD = (0.1 * 0.9 * SETS) ** 0.5
@@ -34,7 +33,7 @@ def p_value(seed: int, reference: np.ndarray, block: np.ndarray) -> float:
     size = np.log10(np.square(lines - lines[reference]).sum(axis=1))
     attacker = best_column("change", np.where(reference >= 0, size, np.nan)[:, None], ("",))
     ways = np.concatenate([DAMAGED[None], permuted(DAMAGED, block, SPECIMEN, seed, PERMUTATIONS)])
-    maxima = bank_maxima([attacker], np.arange(SPECIMEN.size), ways, SPECIMEN, dealt_folds(SPECIMEN, seed, deals=1))
+    maxima = bank_maxima([attacker], np.arange(SPECIMEN.size), ways, SPECIMEN, DESIGN.dealt(SPECIMEN, seed)[:1])
     return float(np.mean(maxima >= maxima[0]))
 
 

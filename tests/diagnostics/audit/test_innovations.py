@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from scipy.signal import freqz, zpk2tf
 
-from diagnostics.audit.held_out import Trial
 from diagnostics.audit.innovations import innovations
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.residual_lines import whitened
@@ -78,7 +77,8 @@ def test_an_event_at_a_named_tooth_is_found_on_other_gearboxes_and_nothing_witho
     attacker = tooth_attacker("teeth", found, lines)
     assert attacker is not None
     train = SPECIMEN < GEARBOXES // 2
-    score = attacker.attack(Trial(np.arange(SPECIMEN.size), DAMAGED[None], SPECIMEN, train, 0, 0)).score[0]
+    learn, asked = np.flatnonzero(train), np.flatnonzero(~train)
+    score = attacker.make().fit(learn, DAMAGED[None, train], SPECIMEN[train]).score(asked)[0]
     held = DAMAGED[~train]
     assert np.mean(score[held][:, None] > score[~held]) > 0.9
     nothing = tooth_attacker("teeth", of_labels({"teeth_pinion": np.array([18])}), lines)

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from diagnostics.audit import signal_attackers
-from diagnostics.audit.held_out import Trial
 from diagnostics.audit.measured_set import MeasuredSet
 
 GEARBOXES, STEPS = 16, 1024
@@ -43,8 +42,9 @@ def test_it_finds_a_burst_wherever_it_is_and_says_the_same_twice(
         attacker = signal_attackers.network_attacker("network", bursts(), reference, 0)
         assert attacker is not None
         assert attacker.usable.all()
-        assert not attacker.permutable
-        return attacker.attack(Trial(np.arange(SPECIMEN.size), DAMAGED[None], SPECIMEN, SPECIMEN < 10, 0, 0)).score[0]
+        assert not attacker.many
+        learn, places = SPECIMEN < 10, np.arange(SPECIMEN.size)
+        return attacker.make().fit(places[learn], DAMAGED[None, learn], SPECIMEN[learn]).score(places[~learn])[0]
 
     first, held = score(), DAMAGED[SPECIMEN >= 10]
     assert np.mean(first[held][:, None] > first[~held]) > 0.9

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.audit.bank_detections import permuted
-from diagnostics.audit.held_out import dealt_folds, held_out
+from diagnostics.audit.bank_detections import DESIGN, permuted
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.audit.noise_excess import noise_excess
 from diagnostics.audit.raw_columns import RawColumns
 from diagnostics.audit.small_damage import sized_states, small_damage_attackers
+from diagnostics.judging.evaluation import held_out
 
 GEARBOXES = 24
 STATES = np.tile(["healthy", "again", "small", "large"], GEARBOXES)
@@ -82,7 +82,7 @@ def test_small_damage_counts_only_where_large_damage_does_no_more(
     (attacker,) = small_damage_attackers(found, reference_records(found))
     rows = np.flatnonzero(attacker.usable)
     of_state, specimen = STATES[rows] == "small", SPECIMEN[rows]
-    folds = dealt_folds(SPECIMEN, 0)[:, rows]
+    folds = DESIGN.dealt(SPECIMEN, 0)[:, rows]
     auc = held_out(attacker, rows, of_state, specimen, folds, 0).auc.value
     # 24 and 24 records without any effect scatter by 0.08
     assert auc > 0.9 if is_told else auc < 0.75
@@ -94,6 +94,6 @@ def test_permuting_finds_the_columns_anew() -> None:
     (attacker,) = small_damage_attackers(found, reference_records(found))
     rows = np.flatnonzero(attacker.usable)
     ways = permuted(STATES[rows] == "small", SPECIMEN[rows], SPECIMEN[rows], 0, 20)
-    folds = dealt_folds(SPECIMEN, 0)[:, rows]
+    folds = DESIGN.dealt(SPECIMEN, 0)[:, rows]
     areas = [held_out(attacker, rows, way, SPECIMEN[rows], folds, 0).auc.value for way in ways]
     assert np.mean(areas) == pytest.approx(0.5, abs=0.06)  # 20 of a spread of 0.1

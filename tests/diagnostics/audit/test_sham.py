@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnostics.audit.column_attackers import best_column
 from diagnostics.audit.condition_traps import level_attackers
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.raw_columns import RawColumns
 from diagnostics.audit.sham import sham_sentences, sham_traps, shams_found
-from diagnostics.statistics.detector import judged_detector
+from diagnostics.judging.alarms import judged_alarm
+from diagnostics.judging.learners import best_column
 
 GEARBOXES = 24
 SPECIMEN = np.repeat(np.arange(GEARBOXES), 4)
@@ -82,9 +82,9 @@ def test_sets_without_one_are_asked_nothing() -> None:
 def test_a_detector_has_the_area_of_shams_against_other_healthy_records() -> None:
     score = np.where(STATES == "sham", 1.0, 0.0)
     labels = {name: LABELS[name] for name in LABELS if name not in ("speed_hz", "torque_nm")}
-    found = judged_detector("planted", score, labels, seed=0)
+    found = judged_alarm("planted", score, labels, seed=0)
     assert found is not None
     assert found.sham is not None
     assert found.sham.value == 1.0
     del labels["sham"]
-    assert judged_detector("planted", score, labels, seed=0).sham is None  # type: ignore[union-attr]
+    assert judged_alarm("planted", score, labels, seed=0).sham is None  # type: ignore[union-attr]

@@ -13,7 +13,7 @@ import pytest
 
 import diagnostics
 from diagnostics.base.progress import silent_stage
-from diagnostics.bench.baselines import BESIDE, CHANCE, KURTOGRAM, NETWORK, STACK, detectors
+from diagnostics.bench.baselines import BESIDE, CHANCE, KURTOGRAM, NETWORK, STACK, entries
 from diagnostics.bench.leaderboard import BOARD, NUMBERS
 from diagnostics.bench.seen_records import benchmark_records, seen_records
 from diagnostics.scoring.benchmark import open_benchmark
@@ -121,11 +121,13 @@ def test_baselines_say_the_same_from_any_number_of_processes(made: Made, tmp_pat
 def test_the_network_learns_from_the_records_that_it_may_see_alone(learned: Path) -> None:
     pytest.importorskip("torch")
     seen = seen_records(benchmark_records(open_benchmark(learned), 1, silent_stage), referenced=True)
-    network = detectors(0)[NETWORK]
+    network = next(entry for entry in entries(seen, 0) if entry.name == NETWORK)
     unique = np.unique(seen.gearbox)
-    half = np.isin(seen.gearbox, unique[: unique.size // 2])
-    score = network(seen, half)
-    assert score.size == seen.learn + seen.tests().size
-    assert np.isfinite(score).all()
-    seen.damaged[~half] = ~seen.damaged[~half]
-    assert np.array_equal(network(seen, half), score)
+    half, own = np.isin(seen.gearbox, unique[: unique.size // 2]), network.X[: seen.learn]
+    scores = []
+    for damaged in (seen.damaged, np.where(half, seen.damaged, ~seen.damaged)):
+        learnt = network.make().fit(own[half], damaged[half], seen.gearbox[half])
+        scores.append(learnt.score(network.X))
+    assert scores[0].size == seen.learn + seen.tests().size
+    assert np.isfinite(scores[0]).all()
+    assert np.array_equal(*scores)

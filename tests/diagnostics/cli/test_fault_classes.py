@@ -19,14 +19,12 @@ from diagnostics.base.progress import silent_stage
 from diagnostics.explore.set_page import predicted_labels
 from diagnostics.indicators.classifier_table import classifier_table
 from diagnostics.indicators.table import RecordTable, record_table
+from diagnostics.judging.of_split import NetworkOptions, train_models, training_metrics
+from diagnostics.judging.sets import OtherSet, check_other_set, set_table
 from diagnostics.loader.window_index import StreamSettings, window_index
 from diagnostics.prediction.released_model import load_model
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.records.record_classes import FAULT
-from diagnostics.training.network_training import NetworkOptions
-from diagnostics.training.other_set import OtherSet, check_other_set
-from diagnostics.training.training import train_models, training_metrics
-from diagnostics.training.training_sets import set_table
 from siggen.errors import UsageError
 from tests.command import command
 

@@ -22,8 +22,8 @@ from diagnostics.explore.set_page import LookOptions, predicted_labels, set_look
 from diagnostics.indicators.registry import columns, indicator_definitions, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable
+from diagnostics.judging.of_split import Training
 from diagnostics.prediction.released_model import load_model
-from diagnostics.training.training import Training
 from siggen.errors import UsageError
 from tests.diagnostics.conftest import CHANNELS, MemoryDataset, memory_dataset
 from tests.diagnostics.explore.unpacked import DATA, held, listed, rows, steps

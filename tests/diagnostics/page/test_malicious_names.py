@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 from diagnostics.cli.app import app
+from diagnostics.judging.of_split import NetworkOptions
 from diagnostics.page import html
 from diagnostics.records.usable_records import with_channels
 from diagnostics.report.report import write_report
-from diagnostics.training.network_training import NetworkOptions
 from siggen.printable import printable
 from tests.diagnostics.conftest import CHANNELS, MemoryDataset, memory_dataset
 from tests.diagnostics.explore.test_explorer import NAMES, renamed

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -12,10 +13,9 @@ import numpy as np
 import pytest
 
 from diagnostics.cli.app import main
-from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.prediction.model_facts import sealed_text, unsealed_text
 from diagnostics.prediction.released_model import load_model
-from diagnostics.training.baselines import fitted_classifier
+from diagnostics.training.classifiers import LogisticBaseline
 from siggen.errors import UsageError
 from tests.diagnostics.prediction.resealed_model import reseal
 
@@ -64,9 +64,8 @@ def test_a_pipeline_of_other_size_is_refused(folder: Path) -> None:
     import skops.io
 
     rows = np.array([[0.0, 1.0], [1.0, 0.0], [2.0, 2.0], [3.0, 1.0]])
-    matrix = FeatureMatrix(rows, ("a", "b"), {})
-    other = fitted_classifier(matrix, np.arange(4), ("w", "x", "y", "z"))
-    skops.io.dump(other.pipeline, folder / "classifier.skops")
+    other = LogisticBaseline((0.01,)).fit(rows, np.arange(4), np.arange(4))
+    skops.io.dump(other.pipeline_, folder / "classifier.skops")
     reseal(folder)
     with pytest.raises(UsageError, match=r"classifier\.skops: does not belong .*takes 2 features .* class 4 of 3"):
         load_model(folder)
@@ -75,15 +74,14 @@ def test_a_pipeline_of_other_size_is_refused(folder: Path) -> None:
 def test_a_network_of_another_model_is_refused(folder: Path) -> None:
     torch = pytest.importorskip("torch")
     pytest.importorskip("safetensors")
-    from diagnostics.training.cnn import CircularNetwork, TrainedNetwork
-    from diagnostics.training.cnn_files import save_network
-    from diagnostics.training.network_training import TrainedNetworkFile
+    from diagnostics.training.cnn import CircularNetwork, TrainedNetwork, save_network
 
     torch.manual_seed(0)
-    trained = TrainedNetwork(CircularNetwork(6, 3), ("healthy", "slight", "severe"), 1, 1, (), "")
+    trained = TrainedNetwork(
+        CircularNetwork(6, 3), ("healthy", "slight", "severe"), ("bearing_vertical", "bearing_horizontal")
+    )
     for identity in ("f" * 64, "0" * 64):
-        file = TrainedNetworkFile(trained, ("bearing_vertical", "bearing_horizontal"), identity)
-        save_network(file, folder / "cnn.safetensors")
+        save_network(replace(trained, identity=identity), folder / "cnn.safetensors")
         reseal(folder)
         if identity[0] == "f":
             with pytest.raises(UsageError, match=r"cnn\.safetensors: does not belong .*identity"):

@@ -12,16 +12,15 @@ import pytest
 
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.indicators.table import RecordTable
+from diagnostics.judging.of_split import Training
 from diagnostics.prediction.prediction import predict_recording
 from diagnostics.prediction.released_model import load_model
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.statistics.calibration import tempered
 from diagnostics.training.average_rows import averaged_records
-from diagnostics.training.baselines import state_index
 from diagnostics.training.cnn import NetworkSettings, network_probability, train_network
-from diagnostics.training.network_training import TrainedNetworkFile
-from diagnostics.training.training import Training
+from diagnostics.training.feature_classifier import state_index
 from siggen.errors import UsageError
 
 
@@ -31,7 +30,7 @@ def test_the_vote_of_a_recording_is_that_of_the_record_and_a_foreign_network_is_
     averages = averaged_records(measured)
     target = state_index(feature_matrix(features), training.split.classes)
     found = train_network(averages, target, training.split, 1, NetworkSettings(most_epochs=8))
-    kept = TrainedNetworkFile(replace(found, temperature=0.7), averages.channels, "0" * 64)
+    kept = replace(found, temperature=0.7, identity="0" * 64)
     save_models(replace(training, network=kept), features, dataset, tmp_path)
     model = load_model(tmp_path)
     assert model.network is not None

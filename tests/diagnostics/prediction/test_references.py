@@ -20,21 +20,21 @@ from diagnostics.base.progress import silent_stage
 from diagnostics.cli.app import main
 from diagnostics.indicators.classifier_table import classifier_table, feature_matrix
 from diagnostics.indicators.table import RecordTable, record_table
+from diagnostics.judging import of_split
+from diagnostics.judging.of_split import (
+    NetworkOptions,
+    Training,
+    judge_network,
+    network_votes,
+    referenced_classifiers,
+    train_models,
+    training_metrics,
+)
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.report.comparison_tables import score_blocks
-from diagnostics.training import cnn, network_training
+from diagnostics.training import cnn
 from diagnostics.training.average_rows import averaged_records
-from diagnostics.training.network_training import (
-    NetworkOptions,
-    TrainedNetworkFile,
-    judge_network,
-    network_predictions_of,
-)
-from diagnostics.training.referenced import (
-    healthy_references,
-    referenced_classifiers,
-)
-from diagnostics.training.training import Training, train_models, training_metrics
+from diagnostics.training.referenced import healthy_references
 from tests.diagnostics.conftest import SPLITS_24
 
 FS_HZ = 12_800
@@ -205,7 +205,7 @@ def test_the_network_is_judged_alone_and_beside_a_healthy_record(
 ) -> None:  # fmt: skip
     few = partial(cnn.NetworkSettings, most_epochs=12)
     monkeypatch.setattr(cnn, "NetworkSettings", few)
-    monkeypatch.setattr(network_training, "PERMUTED_EPOCHS", 2)
+    monkeypatch.setattr(of_split, "PERMUTED_EPOCHS", 2)
     averages, options = averaged_records(indicators_of_both), NetworkOptions()
     matrix, split = feature_matrix(features_of_both), training.split
     trained, alone = judge_network("network", averages, matrix, split, 0, options, silent_stage)
@@ -222,7 +222,7 @@ def test_the_network_is_judged_alone_and_beside_a_healthy_record(
         ("network_referenced", "healthy_referenced"),
     ]
     assert alone.permuted_auroc.shape == (1,)
-    every = network_predictions_of(TrainedNetworkFile(trained, averages.channels, "0"), averages, matrix)
+    every = network_votes(trained, averages, matrix, np.ones(len(matrix.values), dtype=bool))
     np.testing.assert_array_equal(every.truth[split.test], alone.predictions.truth)
 
 

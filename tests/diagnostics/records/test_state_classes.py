@@ -15,16 +15,14 @@ import pytest
 
 from diagnostics.base.progress import silent_stage
 from diagnostics.indicators.classifier_table import feature_matrix
+from diagnostics.judging.of_split import NetworkOptions, Training, train_models, training_metrics
+from diagnostics.judging.sets import OtherSet, check_other_set, set_table
 from diagnostics.loader.window_index import StreamSettings, window_index
 from diagnostics.prediction.model_facts import read_facts
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.report.detector_table import detection_blocks
 from diagnostics.report.sentences import scores_sentence
-from diagnostics.training.baselines import state_index
-from diagnostics.training.network_training import NetworkOptions
-from diagnostics.training.other_set import OtherSet, check_other_set
-from diagnostics.training.training import Training, train_models, training_metrics
-from diagnostics.training.training_sets import set_table
+from diagnostics.training.feature_classifier import state_index
 
 SPLITS = ("train",) * 5 + ("validation",) * 2 + ("test",) * 3
 WITHOUT = NetworkOptions(cnn=False)

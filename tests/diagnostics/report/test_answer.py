@@ -5,17 +5,25 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from diagnostics.judging.alarms import (
+    CHOSEN,
+    CLASSIFIER,
+    INDICATOR,
+    NETWORKS,
+    Detectors,
+    FoundSize,
+    JudgedDetector,
+    StateFound,
+)
 from diagnostics.report.answer import LOOKS, answer_figure, answer_sentences
 from diagnostics.report.first_screen import first_answer, first_certainty
-from diagnostics.statistics.detector import Detector, FoundSize, StateFound
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.training.detectors import CHOSEN, CLASSIFIER, INDICATOR, NETWORKS, Detectors
 
 FOUND_MEANS = "Found: the record gives an alarm, as 5 % of healthy records do."
 BESIDE = "With a healthy record of the same gearbox"
 
 
-def detector(auc: float, found_mm2: float, healthy: int = 24) -> Detector:
+def detector(auc: float, found_mm2: float, healthy: int = 24) -> JudgedDetector:
     share = Interval(0.4, 0.3, 0.5)
     states = {
         "slight": StateFound("pitting", 1.0, Interval(0.66, 0.55, 0.75), share),
@@ -23,19 +31,19 @@ def detector(auc: float, found_mm2: float, healthy: int = 24) -> Detector:
     }
     sizes = {"pitting": FoundSize(Interval(found_mm2, 2.0, math.inf), 1.0, 8.0)}
     area = Interval(auc, auc - 0.1, auc + 0.1)
-    return Detector("logistic regression", False, area, states, sizes, 72, 24, healthy)
+    return JudgedDetector("logistic regression", False, area, states, sizes, 72, 24, healthy)
 
 
 def screen(found: Detectors) -> str:
     return first_answer(found).replace("\xa0", " ")
 
 
-def with_choice(found: dict[str, Detector]) -> dict[str, Detector]:
+def with_choice(found: dict[str, JudgedDetector]) -> dict[str, JudgedDetector]:
     """Return detectors with the first, which the other gearboxes choose."""
     return {**found, CHOSEN: next(iter(found.values()))} if found else {}
 
 
-def said(**found: Detector) -> dict[str, str]:
+def said(**found: JudgedDetector) -> dict[str, str]:
     return {
         question: text.replace("\xa0", " ") for question, text in answer_sentences(Detectors(with_choice(found), {}))
     }
@@ -132,7 +140,7 @@ def test_the_figure_has_a_mark_for_the_chosen_size_and_says_where_sizes_are_too_
 def test_the_first_screen_names_damage_size_detector_and_certainty() -> None:
     found = Detectors({CLASSIFIER: detector(0.8, 4.0), CHOSEN: detector(0.8, 4.0)}, {})
     assert screen(found) == (
-        "**Pitting from 4 mm² on** (2 to beyond the largest) is found in **nine of ten records**. Detector: "
+        "**Pitting from 4 mm² on** (2 to beyond the largest) is found in **nine of ten records**. JudgedDetector: "
         "**logistic regression**."
     )
     sure = first_certainty(found, error_free=False, audit="No trap was found. More.").replace("\xa0", " ")

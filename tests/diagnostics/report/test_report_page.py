@@ -23,16 +23,16 @@ from diagnostics.audit.audit import ALONE
 from diagnostics.indicators.registry import columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable
+from diagnostics.judging import of_split
+from diagnostics.judging.of_split import NetworkOptions, Training
 from diagnostics.page.provenance import without_path
 from diagnostics.records.usable_records import with_channels
 from diagnostics.report import report
 from diagnostics.report.audit_words import audit_beside, audit_sentence
 from diagnostics.report.report import PageOptions, write_report
 from diagnostics.signal.spectrum import OrderSpectrum, strongest_harmonic
-from diagnostics.training import cnn, network_training
-from diagnostics.training.network_training import NetworkOptions
+from diagnostics.training import cnn
 from diagnostics.training.realism import meaning_of_scores
-from diagnostics.training.training import Training
 from siggen.errors import DatasetError, UsageError
 from tests.diagnostics.conftest import CHANNELS
 
@@ -214,7 +214,7 @@ def test_seven_revolutions_and_no_validation_specimens_still_train_every_classif
     make_dataset: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cnn, "NetworkSettings", partial(cnn.NetworkSettings, most_epochs=4))
-    monkeypatch.setattr(network_training, "PERMUTED_EPOCHS", 2)
+    monkeypatch.setattr(of_split, "PERMUTED_EPOCHS", 2)
     short = with_channels(make_dataset(("train",) * 3 + ("test",) * 2, duration_s=0.25), CHANNELS[:1])
     earlier = tmp_path / "figures" / "confusion_network.png"
     earlier.parent.mkdir()

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from diagnostics.judging.judgement import VALIDATION_AUROC, Comparison
 from diagnostics.page.wording import counted, joined, percent, signed
 from diagnostics.report.sentences import (
     area_sentence,
@@ -21,9 +22,7 @@ from diagnostics.report.sentences import (
     summary,
     trust_sentence,
 )
-from diagnostics.statistics.comparison import Comparison
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.judgement import VALIDATION_AUROC
 from diagnostics.statistics.separability import Separability
 
 NAN = math.nan

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.audit.held_out import wins
+from diagnostics.judging.evaluation import wins
 from diagnostics.statistics.evaluation import bootstrap_weights, interval
 from diagnostics.statistics.scores import area_interval, clopper_pearson, effective_size
 

@@ -21,15 +21,14 @@ from diagnostics.indicators.table import record_table
 from diagnostics.records.usable_records import with_channels
 from diagnostics.statistics.scores import scores
 from diagnostics.statistics.separability import separability
-from diagnostics.training.baselines import (
+from diagnostics.training.classifier_file import load_classifier, save_classifier, untrusted_types
+from diagnostics.training.classifiers import STRENGTHS, LogisticBaseline, trained
+from diagnostics.training.feature_classifier import (
     DEFAULT_STRENGTH,
-    STRENGTHS,
     FeatureClassifier,
     permutation_control,
     rms_features,
-    train_classifier,
 )
-from diagnostics.training.classifier_file import load_classifier, save_classifier, untrusted_types
 from diagnostics.training.splits import SpecimenSplit, specimen_split
 from siggen.errors import UsageError
 from tests.diagnostics.conftest import CHANNELS, SPLITS_24, memory_dataset
@@ -47,7 +46,7 @@ def split(matrix: FeatureMatrix) -> SpecimenSplit:
 
 @pytest.fixture(scope="module")
 def model(matrix: FeatureMatrix, split: SpecimenSplit) -> FeatureClassifier:
-    return train_classifier(matrix, split)
+    return trained(LogisticBaseline(), matrix, split)
 
 
 def test_plain_modulation_is_found_on_unseen_specimens(
@@ -62,7 +61,10 @@ def test_level_alone_does_not_show_it(matrix: FeatureMatrix, split: SpecimenSpli
     # the level of these records is drawn without regard to the state; 24 test records scatter by about 0.1 around 0.5
     alone = matrix.columns(rms_features(matrix.names))
     assert alone.names == ("rms__bearing_vertical", "rms__bearing_horizontal")
-    assert scores(train_classifier(alone, split).predict(alone.rows(split.test)), seed=0).macro_auroc.value < 0.8
+    assert (
+        scores(trained(LogisticBaseline(), alone, split).predict(alone.rows(split.test)), seed=0).macro_auroc.value
+        < 0.8
+    )
 
 
 def test_permuted_labels_give_chance(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
@@ -74,7 +76,7 @@ def test_without_any_effect_the_scores_are_chance() -> None:
     effectless = with_channels(memory_dataset(SPLITS_24, effect=0.0), CHANNELS[:1])
     matrix = feature_matrix(classifier_table(record_table(effectless)))
     split = specimen_split(matrix.labels)
-    found = scores(train_classifier(matrix, split).predict(matrix.rows(split.test)), seed=0).macro_auroc
+    found = scores(trained(LogisticBaseline(), matrix, split).predict(matrix.rows(split.test)), seed=0).macro_auroc
     assert found.value == pytest.approx(0.5, abs=0.3)  # one run on 24 records: 0.5 +- 0.1, three of which are allowed
     strongest = separability(matrix, seed=0, resamples=50)[0]
     assert strongest.strength < 0.4  # the best of some 200 by chance, where a real effect reaches 0.5
@@ -85,7 +87,7 @@ def test_test_specimens_do_not_touch_the_fit(
 ) -> None:
     changed = matrix.values.copy()
     changed[split.test] = 1e6
-    other = train_classifier(replace(matrix, values=changed), split)
+    other = trained(LogisticBaseline(), replace(matrix, values=changed), split)
     np.testing.assert_array_equal(other.pipeline[-1].coef_, model.pipeline[-1].coef_)
 
 
@@ -95,7 +97,7 @@ def test_undefined_values_are_imputed_even_where_a_feature_is_never_defined(
     holes = matrix.values.copy()
     holes[:, 3] = math.nan
     holes[::5, 7] = math.nan
-    found = train_classifier(replace(matrix, values=holes), split).predict(matrix.rows(split.test))
+    found = trained(LogisticBaseline(), replace(matrix, values=holes), split).predict(matrix.rows(split.test))
     np.testing.assert_allclose(found.probability.sum(axis=1), 1.0)
 
 
@@ -103,12 +105,12 @@ def test_strength_is_chosen_without_validation_specimens_too_and_never_by_test_s
     matrix: FeatureMatrix, split: SpecimenSplit
 ) -> None:
     alone = replace(split, validation=np.zeros_like(split.validation))
-    chosen = train_classifier(matrix, alone)
+    chosen = trained(LogisticBaseline(), matrix, alone)
     assert chosen.strength in STRENGTHS
     assert chosen.note == ""
     shuffled = matrix.values.copy()
     shuffled[split.test] = np.random.default_rng(0).permutation(shuffled[split.test])
-    assert train_classifier(replace(matrix, values=shuffled), alone).strength == chosen.strength
+    assert trained(LogisticBaseline(), replace(matrix, values=shuffled), alone).strength == chosen.strength
 
 
 def test_too_few_specimens_take_the_default_strength_and_say_so(matrix: FeatureMatrix, split: SpecimenSplit) -> None:
@@ -116,7 +118,7 @@ def test_too_few_specimens_take_the_default_strength_and_say_so(matrix: FeatureM
     first, second = np.unique(matrix.labels["specimen_id"][split.train])[:2]
     own = matrix.labels["specimen_id"]
     train = ((own == first) & healthy) | ((own == second) & ~healthy)
-    model = train_classifier(matrix, replace(split, train=train, validation=np.zeros_like(train)))
+    model = trained(LogisticBaseline(), matrix, replace(split, train=train, validation=np.zeros_like(train)))
     assert model.strength == DEFAULT_STRENGTH
     assert "too few training specimens" in model.note
 
@@ -130,7 +132,7 @@ def test_positive_columns_are_taken_as_logarithms_so_that_a_gain_is_a_summand(
     place = matrix.names.index("rms__bearing_vertical")
     other = matrix.values.copy()
     other[:, place] *= 1e3
-    again = train_classifier(replace(matrix, values=other), split).predict(replace(matrix, values=other))
+    again = trained(LogisticBaseline(), replace(matrix, values=other), split).predict(replace(matrix, values=other))
     np.testing.assert_allclose(again.probability, model.predict(matrix).probability, atol=1e-6)
 
 

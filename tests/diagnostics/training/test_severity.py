@@ -7,7 +7,7 @@ import pytest
 
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.training.severity import mean_areas
+from diagnostics.judging.of_split import mean_areas
 from diagnostics.training.splits import SpecimenSplit, specimen_split
 
 

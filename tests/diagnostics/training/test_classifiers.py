@@ -12,7 +12,7 @@ from sklearn.model_selection import GroupKFold
 import diagnostics
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.training.baselines import state_index, train_classifier
+from diagnostics.training.classifiers import LogisticBaseline, trained
 from diagnostics.training.splits import SpecimenSplit
 from siggen.errors import UsageError
 
@@ -27,10 +27,10 @@ def test_the_logistic_baseline_is_the_classifier_of_a_training(table: FeatureMat
     train, test = table.split("train"), table.split("test")
     every, nobody = np.ones(len(train.values), dtype=bool), np.zeros(len(train.values), dtype=bool)
     classes = tuple(sorted(table.classes))
-    known = train_classifier(train, SpecimenSplit(every, nobody, nobody, classes), state_index(train, classes))
+    known = trained(LogisticBaseline(), train, SpecimenSplit(every, nobody, nobody, classes))
     model = diagnostics.LogisticBaseline().fit(train.values, train.labels["class"], groups=train.groups)
     assert tuple(model.classes_) == classes
-    assert model.model_.strength == known.strength
+    assert model.strength_ == known.strength
     # the columns lie otherwise in memory, so that sums differ in their last bits, and the solver's last step with them
     assert np.allclose(model.predict_proba(test.values), known.probability(test.values), rtol=0.0, atol=1e-6)
 

@@ -1,31 +1,50 @@
-"""One number per record as an alarm for damage: its AUC by state, and the size that it finds in nine of ten records.
+"""One number per record as an alarm for damage: best single indicator, classifiers and a network.
 
-Sizes mean something among damages of one kind only, so every kind has its own. An alarm is a score above the quantile
-of healthy records that leaves the false alarms above it; with few healthy records such a quantile does not exist, and
-no size is given. Intervals come from resampled gearboxes, and the threshold is drawn anew in each. Source:
-probability of detection (a90), standard literature of non-destructive testing; see `detectable_size` for the curve.
+Indicator and classifiers are judged on every gearbox: what scores a fold was chosen or trained on the others. Penalty
+and number of trees are fixed, so nothing is chosen on what is judged; neither is which of them is the strongest.
+Networks are judged on the test gearboxes only, since training them again for every fold costs minutes.
+
+Told are its AUC by state, and the size that it finds in nine of ten records. Sizes mean something among damages of one
+kind only, so every kind has its own. An alarm is a score above the quantile of healthy records that leaves the false
+alarms above it; with few healthy records such a quantile does not exist, and no size is given. Intervals come from
+resampled gearboxes, and the threshold is drawn anew in each. Source: probability of detection (a90), standard
+literature of non-destructive testing; see `detectable_size` for the curve.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from diagnostics.base.single_thread import single_thread
+from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.judging.evaluation import Design, Entry, chosen_scores, inner_scores, pooled_scores
+from diagnostics.judging.judgement import NETWORK, NETWORK_REFERENCED, TITLES, Judged, damage_score
+from diagnostics.judging.learners import BestColumn, Odds
+from diagnostics.judging.of_split import Training
 from diagnostics.records.gear_train import PAIR, GearNames
 from diagnostics.records.state_classes import HEALTHY, SHAM, damage_kinds, ordered_states
 from diagnostics.statistics.assessment import size_interval
 from diagnostics.statistics.detectable_size import detection_curve, size_at, weighted_quantile
-from diagnostics.statistics.evaluation import Interval, bootstrap_weights, weighted_auc
-from diagnostics.statistics.scores import area_interval
+from diagnostics.statistics.evaluation import Interval, bootstrap_weights
+from diagnostics.statistics.scores import area, area_interval
+from diagnostics.training.feature_classifier import DEFAULT_STRENGTH
+from diagnostics.training.referenced import healthy_referenced
 
 FALSE_ALARMS, FOUND, CHANCE = 0.05, 0.9, 0.5
 FEWEST_HEALTHY = 20
 """Healthy records from which one in twenty can lie above a threshold."""
 
 RESAMPLES = 400
+DESIGN = Design(folds=5, owner=2000)
+FEWEST_SPECIMENS = 4
+INDICATOR, CLASSIFIER = "best single indicator", "logistic regression on all indicators"
+BOOSTED, NETWORKS, CHOSEN = "gradient boosting on all indicators", "network", "chosen"
+CHOICE = "chosen by the other gearboxes"
 AREA = "damaged_area_mm2"
 
 
@@ -67,7 +86,7 @@ class StateFound:
 
 
 @dataclass(frozen=True, slots=True)
-class Detector:
+class JudgedDetector:
     """A detector as it was judged.
 
     Attributes
@@ -147,7 +166,7 @@ class Detector:
         }
 
 
-def judged_detector(
+def judged_alarm(
     title: str,
     score: np.ndarray,
     labels: Mapping[str, np.ndarray],
@@ -155,7 +174,7 @@ def judged_detector(
     *,
     referenced: bool = False,
     basis: str = "",
-) -> Detector | None:
+) -> JudgedDetector | None:
     """Judge scores of records that the detector has not learnt from.
 
     Parameters
@@ -169,11 +188,11 @@ def judged_detector(
     seed : int
         Of the resamples.
     referenced, basis
-        As of `Detector`.
+        As of `JudgedDetector`.
 
     Returns
     -------
-    Detector or None
+    JudgedDetector or None
         None where records are all healthy or all damaged.
     """
     healthy = labels["fault"] == HEALTHY
@@ -191,10 +210,10 @@ def judged_detector(
         for kind, members in kinds.items()
         for state in members
     }
-    return Detector(
+    return JudgedDetector(
         title,
         referenced,
-        _auc(score, ~healthy, weights, specimen),
+        area(score, ~healthy, weights, specimen),
         states,
         _sizes(score, labels, weights, kinds) if threshold is not None else {},
         int(score.size),
@@ -211,12 +230,7 @@ def _sham_auc(score: np.ndarray, labels: Mapping[str, np.ndarray], weights: np.n
     sham = labels[SHAM].astype(bool) if SHAM in labels else np.zeros_like(healthy)
     if not sham.any() or not (healthy & ~sham).any():
         return None
-    return _auc(score[healthy], sham[healthy], weights[:, healthy], labels["specimen_id"][healthy])
-
-
-def _auc(score: np.ndarray, positive: np.ndarray, weights: np.ndarray, specimen: np.ndarray) -> Interval:
-    smaller = min(np.unique(specimen[positive == side]).size for side in (True, False))
-    return area_interval(weighted_auc(score, positive, weights, specimen), smaller)
+    return area(score[healthy], sham[healthy], weights[:, healthy], labels["specimen_id"][healthy])
 
 
 def _state(
@@ -228,7 +242,7 @@ def _state(
     of_state: np.ndarray,
 ) -> StateFound:
     rows = of_state | (labels["fault"] == HEALTHY)
-    auc = _auc(score[rows], of_state[rows], weights[:, rows], labels["specimen_id"][rows])
+    auc = area(score[rows], of_state[rows], weights[:, rows], labels["specimen_id"][rows])
     share = _share(score, labels, weights, threshold, of_state)
     return StateFound(kind, float(np.median(labels[AREA][of_state])), auc, share)
 
@@ -261,3 +275,98 @@ def _sizes(
         reached = size_interval(size_at(curve, FOUND))
         found[kind] = FoundSize(reached, float(curve.size[0]), float(curve.size[-1]))
     return found
+
+
+@dataclass(frozen=True, slots=True)
+class Detectors:
+    """Judged detectors, by family, alone and beside healthy records of the same gearbox; a family may be missing."""
+
+    alone: dict[str, JudgedDetector]
+    referenced: dict[str, JudgedDetector]
+
+    @property
+    def strongest(self) -> JudgedDetector | None:
+        """The one that the other gearboxes choose, of those that are judged on all gearboxes without a reference."""
+        return self.alone.get(CHOSEN)
+
+    @property
+    def strongest_referenced(self) -> JudgedDetector | None:
+        """The same beside a healthy record."""
+        return self.referenced.get(CHOSEN)
+
+
+@single_thread()
+def judged_detectors(matrix: FeatureMatrix, training: Training | None, seed: int) -> Detectors:
+    """Judge all detectors of a set.
+
+    Parameters
+    ----------
+    matrix : FeatureMatrix
+        All records of the one table of the set.
+    training : Training, optional
+        Its networks are judged too.
+    seed : int
+        Of folds and resampled gearboxes.
+    """
+    differences, kept = healthy_referenced(matrix)
+    alone = _cross_fitted(matrix, seed, referenced=False)
+    referenced = _cross_fitted(differences, seed, referenced=True)
+    if training is not None:
+        test = training.split.test
+        alone |= _network(training.judged, NETWORK, matrix.rows(test), training, seed)
+        if training.referenced:
+            rows = matrix.rows(test & training.referenced.kept)
+            referenced |= _network(training.referenced.judged, NETWORK_REFERENCED, rows, training, seed)
+    return Detectors(alone, referenced if kept.any() else {})
+
+
+def _network(
+    judged: tuple[Judged, ...], name: str, rows: FeatureMatrix, training: Training, seed: int
+) -> dict[str, JudgedDetector]:
+    """Return the network of this name on its test records; empty without it."""
+    network = next((entry for entry in judged if entry.name == name), None)
+    if network is None or training.split.healthy is None:
+        return {}
+    score = damage_score(network.predictions, training.split.healthy)
+    detector = judged_alarm(TITLES[name], score, rows.labels, seed, referenced=name == NETWORK_REFERENCED)
+    return {NETWORKS: detector} if detector else {}
+
+
+def _entries(matrix: FeatureMatrix, seed: int, *, referenced: bool) -> list[Entry]:
+    """Return who is judged on all gearboxes; differences of logarithms have been taken beside a reference."""
+    from diagnostics.training.classifiers import DEFAULT_TREES, BoostingBaseline, LogisticBaseline
+
+    every, whole = np.ones(len(matrix.values), dtype=bool), np.isfinite(matrix.values).all(axis=0)
+    names = [name for name, kept in zip(matrix.names, whole, strict=True) if kept]
+
+    def logistic() -> Odds:
+        return Odds(LogisticBaseline((DEFAULT_STRENGTH,), take_logarithms=not referenced))
+
+    found = [
+        Entry(INDICATOR, lambda: BestColumn(names, pooled=True), matrix.values[:, whole], every),
+        Entry(CLASSIFIER, logistic, matrix.values, every),
+        Entry(BOOSTED, lambda: Odds(BoostingBaseline(seed, DEFAULT_TREES)), matrix.values, every),
+    ]
+    return found if names else found[1:]
+
+
+def _cross_fitted(matrix: FeatureMatrix, seed: int, *, referenced: bool) -> dict[str, JudgedDetector]:
+    """Return indicator, classifiers and the choice among them; empty with too few gearboxes of either side."""
+    labels, specimen = matrix.labels, matrix.groups
+    damaged = labels["fault"] != HEALTHY
+    if min(np.unique(specimen[damaged == side]).size for side in (False, True)) < FEWEST_SPECIMENS:
+        return {}
+    fold = DESIGN.dealt(specimen, seed)[0]
+    entries = _entries(matrix, seed, referenced=referenced)
+    pooled = {entry.name: pooled_scores(entry, damaged, specimen, fold) for entry in entries}
+    inner = {entry.name: inner_scores(entry, damaged, specimen, fold) for entry in entries}
+    score, names = chosen_scores({name: scores for name, (scores, _) in pooled.items()}, inner, damaged, fold)
+    judged = {}
+    for name, (scores, basis) in pooled.items():
+        found = judged_alarm(name, scores, labels, seed, referenced=referenced, basis=basis)
+        judged[name] = found and replace(found, gears=matrix.gears)
+    chosen = judged[names[0]]
+    if len(set(names)) > 1:
+        mixed = judged_alarm(CHOICE, score, labels, seed, referenced=referenced)
+        chosen = replace(mixed, picks=tuple(Counter(names).most_common())) if mixed else None
+    return {family: detector for family, detector in {**judged, CHOSEN: chosen}.items() if detector}

@@ -13,11 +13,9 @@ import pyarrow.compute as pc
 import pytest
 
 from diagnostics.base.progress import silent_stage
+from diagnostics.judging.of_split import NetworkOptions, check_device, train_models, training_metrics
+from diagnostics.judging.sets import OtherSet, check_other_set, set_table
 from diagnostics.records.usable_records import with_channels
-from diagnostics.training.network_training import NetworkOptions, check_device
-from diagnostics.training.other_set import OtherSet, check_other_set
-from diagnostics.training.training import train_models, training_metrics
-from diagnostics.training.training_sets import set_table
 from siggen.errors import DatasetError, UsageError
 
 OTHER = {"identity": "1" * 64, "name": "other"}

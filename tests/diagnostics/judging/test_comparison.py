@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.statistics.comparison import comparison, state_auc
+from diagnostics.judging.judgement import comparison, state_auc
 from diagnostics.statistics.evaluation import Predictions
 from diagnostics.statistics.scores import scores
 

@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import ClassVar
 
 import numpy as np
 
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.judging.alarms import BOOSTED, CHOSEN, CLASSIFIER, DESIGN, INDICATOR, judged_detectors
+from diagnostics.judging.evaluation import Entry, chosen_scores, distance, inner_scores
 from diagnostics.statistics.evaluation import column_auc
-from diagnostics.training.detectors import (
-    BOOSTED,
-    CHOSEN,
-    CLASSIFIER,
-    INDICATOR,
-    chosen_scores,
-    dealt,
-    distance,
-    inner_scores,
-    judged_detectors,
-)
 
 GEARBOXES, NOISE_COLUMNS = 24, 400
 STATES = ("healthy", "slight", "severe")
@@ -83,7 +74,7 @@ def test_a_healthy_reference_removes_what_differs_from_gearbox_to_gearbox() -> N
 
 def test_a_gearbox_is_in_one_fold_and_a_column_with_a_gap_is_not_taken() -> None:
     specimen = np.repeat(np.arange(GEARBOXES), 3)
-    fold = dealt(specimen, seed=0)
+    fold = DESIGN.dealt(specimen, seed=0)[0]
     assert all(np.unique(fold[specimen == box]).size == 1 for box in range(GEARBOXES))
     values = noise(3 * GEARBOXES)[:, :2]
     matrix = matrix_of(values)
@@ -95,25 +86,26 @@ def test_a_gearbox_is_in_one_fold_and_a_column_with_a_gap_is_not_taken() -> None
     assert INDICATOR not in judged_detectors(matrix, None, seed=0).alone
 
 
+class Watching:
+    """A detector that notes the folds that it learnt from, and whether it is asked about one of these."""
+
+    seen: ClassVar[list[set[int]]] = []
+
+    def fit(self, X: np.ndarray, y: np.ndarray, groups: np.ndarray) -> Watching:
+        self.own = set(X.tolist())
+        self.seen.append(self.own)
+        return self
+
+    def score(self, X: np.ndarray) -> np.ndarray:
+        assert not self.own & set(X.tolist())
+        return np.zeros(X.size)
+
+
 def test_what_chooses_for_a_fold_saw_neither_it_nor_the_fold_that_it_scores() -> None:
-    matrix = matrix_of(noise(3 * GEARBOXES)[:, :1])
-    damaged = matrix.labels["fault"] != "healthy"
-    fold = dealt(matrix.labels["specimen_id"], seed=0)
-    seen: list[set[int]] = []
-
-    def watching(learnt: FeatureMatrix, _: np.ndarray) -> Callable[[FeatureMatrix], np.ndarray]:
-        own = set(fold[learnt.labels["record_id"]].tolist())
-
-        def score(other: FeatureMatrix) -> np.ndarray:
-            asked = set(fold[other.labels["record_id"]].tolist())
-            assert not own & asked
-            seen.append(own)
-            return np.zeros(other.values.shape[0])
-
-        return score
-
-    inner = inner_scores(watching, matrix, damaged, fold)
-    assert {len(own) for own in seen} == {3}  # of five, without the one left out and the one that is scored
+    specimen, damaged = np.repeat(np.arange(GEARBOXES), 3), np.tile([False, True, True], GEARBOXES)
+    fold = DESIGN.dealt(specimen, seed=0)[0]
+    inner = inner_scores(Entry("watching", Watching, fold, np.ones(fold.size, bool)), damaged, specimen, fold)
+    assert {len(own) for own in Watching.seen} == {3}  # of five, without the one left out and the one that is scored
     for row in range(5):
         assert np.array_equal(np.isnan(inner[row]), fold == row)
 

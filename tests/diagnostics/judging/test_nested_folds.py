@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.judging.nested_folds import KNOWN_ACCEPTED, Nested, Stranger, nested_folds
 from diagnostics.records.state_classes import CLASS
-from diagnostics.training.nested_folds import KNOWN_ACCEPTED, Nested, Stranger, nested_folds
 from diagnostics.training.splits import specimen_split
 
 GEARBOXES = 20

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.audit.bank_detections import bank_maxima, exchanged_unit, permuted
-from diagnostics.audit.column_attackers import PENALTIES, all_columns, best_column, products, ridge_scores
-from diagnostics.audit.held_out import Trial, dealt_folds, held_out, held_out_values, judged_rows, trials
+from diagnostics.audit.bank_detections import DESIGN, bank_maxima, exchanged_unit, permuted
+from diagnostics.judging.evaluation import held_out, held_out_values, judged_rows, rounds
+from diagnostics.judging.learners import PENALTIES, BestColumn, GroupRidge, all_columns, best_column, products
 
 GEARBOXES, COLUMNS = 16, 60
 
@@ -29,27 +29,26 @@ def names(count: int = COLUMNS) -> tuple[str, ...]:
 
 def test_a_fold_holds_whole_gearboxes_and_both_sides_hold_both_classes() -> None:
     specimen, damaged = design()
-    folds = dealt_folds(specimen, seed=1)
+    folds = DESIGN.dealt(specimen, 1)
     for fold in folds:
         assert all(np.unique(fold[specimen == owner]).size == 1 for owner in range(GEARBOXES))
         assert np.unique(fold).size == 4
-    found = [trial for trial, _ in trials(np.arange(specimen.size), damaged[None], specimen, folds)]
-    assert len(found) == 12
-    assert all(not set(specimen[t.train]) & set(specimen[~t.train]) for t in found)
+    entry, every = best_column("best", noise(1), names()), np.arange(specimen.size)
+    asked = [own for _, own, _ in rounds(entry, every, damaged[None], specimen, folds)]
+    assert len(asked) == 12
+    assert all(not set(specimen[own]) & set(specimen[~own]) for own in asked)
 
 
 def test_the_best_of_many_empty_columns_is_at_chance_on_unseen_gearboxes_only() -> None:
     specimen, damaged = design()
-    folds, every = dealt_folds(specimen, 0), np.arange(specimen.size)
+    folds, every = DESIGN.dealt(specimen, 0), np.arange(specimen.size)
     area, shown = [], []
     for seed in range(30):
         values = noise(seed)
         for attacker in (best_column("best", values, names()), all_columns("all", values)):
             area.append(held_out(attacker, every, damaged, specimen, folds, 0).auc.value)
-        whole = best_column("best", values, names())
-        told = whole.attack(Trial(np.r_[every, every], np.r_[damaged, damaged][None], np.r_[specimen, specimen + 99],
-                                  np.arange(2 * every.size) < every.size, 0, 0))  # fmt: skip
-        shown.append(np.mean(told.score[0, damaged][:, None] > told.score[0, ~damaged]))
+        told = BestColumn(names()).fit(values, damaged, specimen).score(values)
+        shown.append(np.mean(told[damaged][:, None] > told[~damaged]))
     # spread of one AUC 0.1, of the mean over 60 about 0.015
     assert np.mean(area) == pytest.approx(0.5, abs=0.05)
     # what a choice on the judged gearboxes would have claimed
@@ -61,7 +60,7 @@ def test_a_planted_column_is_chosen_and_named_and_too_few_gearboxes_are_not_judg
     values = noise(3)
     values[:, 7] -= 4.0 * damaged
     attacker = best_column("best", values, names())
-    found = held_out(attacker, np.arange(specimen.size), damaged, specimen, dealt_folds(specimen, 0), 0)
+    found = held_out(attacker, np.arange(specimen.size), damaged, specimen, DESIGN.dealt(specimen, 0), 0)
     assert found.basis == "column 7"
     assert found.auc.value > 0.95
     assert found.auc.low == pytest.approx(0.025 ** (1 / 16))  # Clopper and Pearson: no surer than all 16 of 16 right
@@ -93,7 +92,9 @@ def test_the_dual_form_is_ridge_regression_and_its_penalty_the_one_of_refits_wit
     best = min(PENALTIES, key=refitted)
     expected = Ridge(best * scale).fit(scaled[train], target[train]).predict(scaled[~train])
     turned = permuted(damaged, specimen, specimen, 0, 1)
-    found = ridge_scores(products(values), np.concatenate([turned, damaged[None]]), specimen, train)[1]
+    ways, every = np.concatenate([turned, damaged[None]]), np.arange(specimen.size)
+    model = GroupRidge(products(values)).fit(every[train], ways[:, train], specimen[train])
+    found = model.score(every[~train])[1]
     assert found + target[train].mean() == pytest.approx(expected, abs=1e-8)
 
 
@@ -101,7 +102,7 @@ def test_with_one_gearbox_to_learn_from_the_largest_penalty_stands() -> None:
     """Its two records differ in one direction only, so a penalty scales the scores and leaves their order."""
     values = np.random.default_rng(5).normal(size=(6, 3))
     train, damaged = np.arange(6) < 2, np.array([[True, False, True, False, True, False]])
-    found = ridge_scores(products(values), damaged, np.array([0, 0, 1, 1, 2, 2]), train)[0]
+    found = GroupRidge(products(values)).fit(np.arange(2), damaged[:, train], np.zeros(2)).score(np.arange(2, 6))[0]
     scaled = (values - values.mean(axis=0)) / values.std(axis=0)
     assert np.isfinite(found).all()
     expected = (scaled[2:] - scaled[:2].mean(axis=0)) @ (scaled[0] - scaled[1])
@@ -119,7 +120,7 @@ def test_states_are_permuted_within_gearboxes_and_a_true_effect_exceeds_what_cha
     assert all(np.unique(among[specimen == owner]).size == 1 for owner in range(GEARBOXES))
     assert exchanged_unit(damaged, np.arange(specimen.size), specimen) == "gearbox"
     assert exchanged_unit(one_state_each, specimen, specimen) == "gearboxes"
-    folds, every, values = dealt_folds(specimen, 0), np.arange(specimen.size), noise(9)
+    folds, every, values = DESIGN.dealt(specimen, 0), np.arange(specimen.size), noise(9)
     bank = [best_column("best", values, names()), all_columns("all", values)]
     maxima = bank_maxima(bank, every, permuted(damaged, specimen, specimen, 0, 20), specimen, folds)
     assert 0.5 < np.quantile(maxima, 0.95) < 0.85
@@ -142,7 +143,7 @@ def test_many_ways_of_stating_the_damage_give_what_each_gives_alone() -> None:
     specimen, damaged = design(7)  # folds of unequal size
     values = np.random.default_rng(4).integers(0, 9, (specimen.size, 12)).astype(float)  # with ties
     values += np.random.default_rng(5).standard_normal(12) * 3.0
-    rows, folds = np.arange(specimen.size), dealt_folds(specimen, 0)
+    rows, folds = np.arange(specimen.size), DESIGN.dealt(specimen, 0)
     ways = np.concatenate([damaged[None], permuted(damaged, specimen, specimen, 0, 9)])
     for attacker in (best_column("best", values, names(12)), all_columns("all", values)):
         together = held_out_values(attacker, rows, ways, specimen, folds)

@@ -1,6 +1,6 @@
 """Every gearbox judged by a classifier that has not seen it: nested folds over all gearboxes of a set.
 
-The outer folds hold gearboxes out; the penalty is chosen inside the rest (`train_classifier`). So a set of 24 gearboxes
+The outer folds hold gearboxes out; the penalty is chosen inside the rest. So a set of 24 gearboxes
 is judged on 24 and not on the few of its test split. What a classifier says of a kind of damage that it was never
 shown is asked too: each damaged class is left out of training in turn, and a record is called "something else" where
 its largest probability lies below what 95 % of known records exceed, by inner folds. Source: nested cross-validation
@@ -10,24 +10,24 @@ and rejection by the largest posterior (Chow 1970), standard literature.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from diagnostics.base.seeding import Purpose, generator
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.judging.evaluation import Design
 from diagnostics.statistics.evaluation import Predictions, bootstrap_weights, macro_auroc
 from diagnostics.statistics.scores import IntervalScores, area_interval, scores
-from diagnostics.training.baselines import FOLDS, fitted_classifier, state_index, train_classifier
+from diagnostics.training.feature_classifier import state_index
 from diagnostics.training.splits import SpecimenSplit
 
 KNOWN_ACCEPTED = 0.95
 """Share of records of known classes that are not called something else."""
 
 RESAMPLES = 300
-Fold = tuple[np.ndarray, np.ndarray]
+DESIGN = Design(folds=4)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,26 +75,27 @@ def nested_folds(
     seed : int
         Seeds folds and bootstrap.
     advance : callable, optional
-        Called `nested_steps(split)` times.
+        Called once for each of `strange_classes(split)`.
     """
-    truth = state_index(matrix, split.classes)
-    fold = fold_of(matrix.labels["specimen_id"], seed)
-    folds = held_out(fold)
-    if len(folds) < 3 or any(np.unique(truth[train]).size < len(split.classes) for train, _ in folds):
+    from diagnostics.training.classifiers import LogisticBaseline
+
+    values, truth, specimen = matrix.values, state_index(matrix, split.classes), matrix.groups
+    fold = DESIGN.dealt(specimen, seed)[0]
+    folds = np.unique(fold).tolist()
+    if len(folds) < 3 or any(np.unique(truth[fold != k]).size < len(split.classes) for k in folds):
         return None
     probability = np.zeros((truth.size, len(split.classes)))
     strengths = []
-    for train, test in folds:
-        nobody = np.zeros_like(train)
-        model = train_classifier(matrix, replace(split, train=train, validation=nobody, test=test))
-        probability[test] = model.probability(matrix.values[test])
-        strengths.append(model.strength)
-    found = Predictions(split.classes, truth, probability, matrix.labels["specimen_id"])
+    for k in folds:
+        model = LogisticBaseline().fit(values[fold != k], truth[fold != k], specimen[fold != k])
+        probability[fold == k] = model.predict_proba(values[fold == k])
+        strengths.append(model.strength_)
     strangers = []
     for name in strange_classes(split):
-        strangers.append(_stranger(name, matrix, split, folds, strengths))
+        strangers.append(_stranger(split.classes.index(name), matrix, split, fold, strengths))
         if advance:
             advance()
+    found = Predictions(split.classes, truth, probability, specimen)
     return Nested(fold_scores(found, fold, seed), len(folds), tuple(strangers))
 
 
@@ -105,36 +106,27 @@ def strange_classes(split: SpecimenSplit) -> tuple[str, ...]:
 
 
 def _stranger(
-    name: str, matrix: FeatureMatrix, split: SpecimenSplit, folds: list[Fold], strengths: list[float]
+    left_out: int, matrix: FeatureMatrix, split: SpecimenSplit, fold: np.ndarray, strengths: list[float]
 ) -> Stranger:
-    truth = state_index(matrix, split.classes)
-    left_out = truth == split.classes.index(name)
-    said: list[str] = []
-    for (train, test), strength in zip(folds, strengths, strict=True):
-        known = matrix.rows(train & ~left_out)
-        model = fitted_classifier(known, truth[train & ~left_out], split.classes, strength)
-        least = _least_certainty(known, truth[train & ~left_out], split.classes, strength)
-        said += _named(model.probability(matrix.values[test & left_out]), split.classes, least)
+    """Return what is said of records of a class, by its place, by classifiers that have never seen it."""
+    from diagnostics.training.classifiers import FOLDS, LogisticBaseline
+
+    truth, said = state_index(matrix, split.classes), list[str]()
+    for k, strength in zip(np.unique(fold).tolist(), strengths, strict=True):
+        known = (fold != k) & (truth != left_out)
+        values, own, specimen = matrix.values[known], truth[known], matrix.groups[known]
+        model = LogisticBaseline((strength,)).fit(values, own, specimen)
+        part, largest = np.unique(specimen, return_inverse=True)[1] % FOLDS, np.zeros(own.size)
+        for inner in np.unique(part).tolist() if np.unique(part).size > 1 else ():
+            rest = LogisticBaseline((strength,)).fit(values[part != inner], own[part != inner], specimen[part != inner])
+            largest[part == inner] = rest.predict_proba(values[part == inner]).max(axis=1)
+        least = float(np.quantile(largest, 1.0 - KNOWN_ACCEPTED))
+        for row in model.predict_proba(matrix.values[(fold == k) & (truth == left_out)]):
+            said.append(split.classes[model.classes_[int(np.argmax(row))]] if row.max() >= least else "")
     counts = Counter(said)
     rejected = counts.pop("", 0)
     called = {word: count / len(said) for word, count in counts.most_common()}
-    return Stranger(name, len(said), rejected / len(said), called)
-
-
-def _named(probability: np.ndarray, classes: tuple[str, ...], least: float) -> Iterator[str]:
-    """Yield the class that each record (n, classes) is called; nothing for something else."""
-    for row in probability:
-        yield classes[int(np.argmax(row))] if row.max() >= least else ""
-
-
-def _least_certainty(matrix: FeatureMatrix, truth: np.ndarray, classes: tuple[str, ...], strength: float) -> float:
-    """Return what `KNOWN_ACCEPTED` of the records exceed with their largest probability on gearboxes not trained on."""
-    _, place = np.unique(matrix.labels["specimen_id"], return_inverse=True)
-    largest = np.zeros(truth.size)
-    for train, test in held_out(place % FOLDS):
-        model = fitted_classifier(matrix.rows(train), truth[train], classes, strength)
-        largest[test] = model.probability(matrix.values[test]).max(axis=1)
-    return float(np.quantile(largest, 1.0 - KNOWN_ACCEPTED))
+    return Stranger(split.classes[left_out], len(said), rejected / len(said), called)
 
 
 def nested_metrics(found: Nested) -> dict[str, Any]:
@@ -152,18 +144,6 @@ def nested_metrics(found: Nested) -> dict[str, Any]:
             for one in found.strangers
         ],
     }
-
-
-def fold_of(group: np.ndarray, seed: int) -> np.ndarray:
-    """Return the fold of every row; rows of a group share it."""
-    members, index = np.unique(group, return_inverse=True)
-    return (generator(seed, Purpose.FOLDS).permutation(members.size) % min(FOLDS, members.size))[index]
-
-
-def held_out(part: np.ndarray) -> list[Fold]:
-    """Return one fold per part: trained on the others, tested on it; none where there is a single part."""
-    parts = np.unique(part)
-    return [(part != one, part == one) for one in parts] if parts.size > 1 else []
 
 
 def fold_scores(found: Predictions, fold: np.ndarray, seed: int) -> IntervalScores:
