@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
-from diagnostics.audit.bank_detections import ChanceLimit, gearboxes_needed
-from diagnostics.audit.best_indicator import BestIndicator
-from diagnostics.audit.detectability import FEWEST_SPECIMENS, Detectability, in_order
+from diagnostics.audit.bank import ChanceLimit, ShamFound, gearboxes_needed
+from diagnostics.audit.detectability import FEWEST_SPECIMENS, BestIndicator, Detectability, in_order
 from diagnostics.audit.envelope import Realism
 from diagnostics.audit.finding import Finding
 from diagnostics.audit.reference_comparison import ReferenceComparison
-from diagnostics.audit.sham import ShamFound
 
 SINGLE = "the best single indicator"
 """Name of the probe that takes one indicator, chosen on other gearboxes."""

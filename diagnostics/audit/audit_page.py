@@ -1,7 +1,4 @@
-"""The audit as one self-contained page.
-
-Figures of the audit: every quantity against its range, and AUC over the size of the damage.
-"""
+"""The audit as one self-contained page: figures, tables, sentences, each written from its numbers."""
 
 from __future__ import annotations
 
@@ -10,21 +7,305 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnostics.audit.attack_tables import attack_parts, shown_ladders, tried
-from diagnostics.audit.audit import Audit
-from diagnostics.audit.audit_sentences import audit_summary, reference_parts
-from diagnostics.audit.detectability import SIZES, TARGETS, Detectability, DetectedLength, differ_in_length, length_at
+from diagnostics.audit.audit import ALONE, UNPAIRED, WITH_REFERENCE, Audit
+from diagnostics.audit.bank import sham_sentences
+from diagnostics.audit.detectability import (
+    FEWEST_SPECIMENS,
+    SIZES,
+    TARGETS,
+    Detectability,
+    DetectedLength,
+    differ_in_length,
+    length_at,
+)
 from diagnostics.audit.envelope import QuantityShare, Realism
+from diagnostics.audit.reference_comparison import FEWEST_GEARBOXES, FEWEST_RECORDINGS, TELLING_AUC, ReferenceComparison
 from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.provenance import provenance
 from diagnostics.page.style import FAULT_COLOURS, HEALTHY_COLOUR, PINION_COLOUR, new_figure
 from diagnostics.page.tables import interval_cell
-from diagnostics.page.wording import counted, percent
+from diagnostics.page.wording import capitalised, counted, decimal, joined, limits, percent
 from siggen.dataset.reading import Dataset
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+TEACHABLE_AUC, CHANCE_AUC = 0.75, 0.6
+"""From the first on a state counts as found; below the second a probe has failed."""
+
+HOW = (
+    "Attackers learn on some gearboxes and are judged on others. Each band, direction and weight is chosen on the "
+    "gearboxes to learn from. Records of one gearbox never stand on both sides. Healthy-referenced attackers see the "
+    "difference from a healthy record of the same gearbox, which is not judged itself. The strongest attacker of a "
+    "state is chosen after the fact, so its AUC is slightly optimistic. The 95 % limits come from resampled gearboxes."
+)
+
+
+def chance_sentence(audit: Audit) -> str:
+    """Say what chance stays below, or what it reaches where that is too much; empty where nothing was judged."""
+    chance = audit.chance
+    if chance is None or not math.isfinite(chance.auc):
+        return ""
+    strongest = f"By chance the strongest of {counted(chance.attackers, 'attacker')}"
+    limits = [law.auc for law in chance.states.values() if math.isfinite(law.auc)]
+    lowest, highest = decimal(chance.auc), decimal(max(limits, default=chance.auc))
+    spread = f"a limit between {lowest} and {highest}, by state," if highest != lowest else f"an AUC of {lowest}"
+    turns = f"{chance.permutations} permutations of the states."
+    if audit.gearboxes_needed is None:
+        return f"{strongest} stays below {spread} in 95 % of {turns}"
+    return (
+        f"{strongest} reaches an AUC of {decimal(chance.auc)} in 5 % of {turns} So no AUC here tells damage from "
+        "chance, and no length of damage is named."
+    )
+
+
+def tried(audit: Audit) -> int:
+    """Return how many single indicators were tried."""
+    return max((best.tried for best in audit.best.values()), default=0)
+
+
+def _auc(value: float) -> str:
+    return f"{value:.2f}" if math.isfinite(value) else "-"
+
+
+def verdict_words(audit: Audit, state: str) -> str:
+    """Say by what a state is found best; where it is not found, by which probes it was looked for in vain.
+
+    What an attacker reaches on a sham is no damage.
+    """
+    probes = audit.probes(state)
+    if not probes:
+        return "not judged"
+    best = max(probes, key=lambda name: probes[name])
+    if audit.gearboxes_needed:
+        return f"too few gearboxes to tell ({_auc(probes[best])} by {best})"
+    if audit.on_sham(best) >= probes[best] >= lost_below(audit, state):
+        return f"not shown to be damage: {best} reaches {_auc(probes[best])}, and {_auc(audit.on_sham(best))} on a sham"
+    if probes[best] >= max(TEACHABLE_AUC, lost_below(audit, state)):
+        return f"can be found, best by {best} ({_auc(probes[best])})"
+    tried = joined([f"{name} ({_auc(auc)})" for name, auc in probes.items()])
+    if probes[best] < lost_below(audit, state):
+        return f"not found by {tried}"
+    return f"hard to find, best by {best} ({_auc(probes[best])}) of {tried}"
+
+
+def lost_below(audit: Audit, state: str) -> float:
+    """Return the AUC below which a state counts as lost: 0.6, or what the strongest attacker reaches by chance."""
+    limit = audit.chance.of(state) if audit.chance else math.nan
+    return max(CHANCE_AUC, limit) if math.isfinite(limit) else CHANCE_AUC
+
+
+def shown_ladders(audit: Audit) -> dict[str, list[Detectability]]:
+    """Return the detections that are shown over the size of the damage: the strongest ones, and the older probe."""
+    found = {ALONE: audit.ladder(referenced=False), WITH_REFERENCE: audit.ladder(referenced=True)}
+    found[UNPAIRED] = audit.detections.get(UNPAIRED, [])
+    return {name: entries for name, entries in found.items() if entries}
+
+
+def attack_parts(audit: Audit) -> list[str]:
+    """Return the tables of the attackers; nothing where none could judge."""
+    if not audit.states:
+        return []
+    return [html.paragraph(f"{HOW} {chance_sentence(audit)}".strip()), _strongest_table(audit), _every_table(audit)]
+
+
+def _strongest_table(audit: Audit) -> str:
+    ladders = [{entry.state: entry for entry in audit.ladder(referenced=side)} for side in (False, True)]
+    rows = []
+    for state in audit.states:
+        cells = [Cell(state)]
+        for ladder in ladders:
+            entry = ladder.get(state)
+            cells += [Cell(entry.basis), interval_cell(entry.auc)] if entry else [Cell("–"), Cell("–")]
+        rows.append([*cells, _chance_cell(audit, state), Cell(verdict_words(audit, state))])
+    head = ["State", "Strongest alone", "AUC [-]", "Strongest with a healthy reference", "AUC [-]", "Chance", "Verdict"]
+    caption = (
+        "The strongest attacker by state, with what it chose most often: AUC against healthy, with 95 % limits. "
+        "Chance: share of permutations, the stated states among them, in which the strongest of all attackers but the "
+        "networks, the teeth and the older probes reaches as much. Each state is a test of its own: of twenty "
+        "states without any effect one lies at 0.05 or below."
+    )
+    return html.table(head, rows, caption=caption, text=True)
+
+
+def _chance_cell(audit: Audit, state: str) -> Cell:
+    """Return the p-value of the bank of attackers on a state."""
+    law = audit.chance.states.get(state) if audit.chance else None
+    if law is None or not math.isfinite(law.p_value):
+        return Cell("–")
+    return Cell(f"{law.p_value:.3f}", value=law.p_value)
+
+
+def _every_table(audit: Audit) -> str:
+    rows = []
+    for name, entries in audit.detections.items():
+        by_state = {entry.state: entry.auc.value for entry in entries}
+        number = max((entry.tried for entry in entries), default=0)
+        cells = [by_state.get(state, math.nan) for state in audit.states]
+        shown = [Cell(f"{auc:.2f}" if math.isfinite(auc) else "–", value=auc) for auc in cells]
+        rows.append([Cell(capitalised(name)), Cell(str(number), value=number), *shown])
+    head = ["Attacker", "Columns", *audit.states]
+    caption = "Every attacker on every state: AUC against healthy on gearboxes that were not seen."
+    return html.table(head, rows, caption=caption, sortable=True)
+
+
+OUTSIDE = 0.05
+"""A recording is outside where fewer gearboxes than this lie as far from their median."""
+
+GAPS_CAPTION = (
+    "Features of windows of one second, the most telling first. The AUC tells measured from synthetic windows."
+)
+PLACE_CAPTION = (
+    "Distance of every recording from the median of the gearboxes' channels, over their spread, and the share of these "
+    "channels that lie as far or farther."
+)
+
+
+def reference_sentences(found: ReferenceComparison) -> list[str]:
+    """Say what gives the set away, whether recordings lie within its spread, and how wide that is."""
+    worst = joined([gap.name for gap in found.gaps[:3]])
+    told = (
+        f"{found.telling} of {len(found.gaps)} features alone reach an AUC of {TELLING_AUC:g} or more between the set "
+        f"and {counted(found.recordings, 'recording')}. The most telling are {worst}. {percent(found.inside)} of the "
+        "synthetic values lie inside 95 % of the measured ones."
+    )
+    inside = [place for place in found.places if place.farther >= OUTSIDE]
+    spread = (
+        f"{len(inside)} of {counted(len(found.places), 'recording')} lie within the spread of the synthetic gearboxes. "
+        f"The median distance of a gearbox's channel from their middle is {decimal(found.gearbox_distance)} spreads; "
+        "width alone is no merit."
+    )
+    return [told, _discriminator_sentence(found), spread]
+
+
+def _discriminator_sentence(found: ReferenceComparison) -> str:
+    if math.isfinite(found.discriminator_auc):
+        return (
+            f"All features together tell them with an AUC of {decimal(found.discriminator_auc)} on recordings and "
+            "gearboxes that were not seen."
+        )
+    return (
+        f"All features together were not judged: that needs {FEWEST_RECORDINGS} recordings and {FEWEST_GEARBOXES} "
+        f"gearboxes, and there are {found.recordings} and {found.gearboxes}. Windows of one recording do not count as "
+        "several."
+    )
+
+
+def reference_parts(found: ReferenceComparison) -> list[str]:
+    """Return the tables of the page."""
+    rows = [
+        [
+            Cell(gap.name),
+            *(_number(value) for value in (gap.auc, gap.measured, gap.synthetic, gap.synthetic_spread)),
+            Cell(f"{100.0 * gap.inside:.0f}", value=gap.inside),
+        ]
+        for gap in found.gaps
+    ]
+    head = ["Feature", "AUC [-]", "Measured", "Synthetic", "Spread of gearboxes", "Synthetic inside [%]"]
+    places = [
+        [Cell(p.name), _number(p.distance), Cell(f"{100.0 * p.farther:.0f}", value=p.farther), Cell(str(p.windows))]
+        for p in found.places
+    ]
+    place_head = ["Recording", "Distance [spreads]", "Channels as far [%]", "Windows"]
+    return [
+        *(html.paragraph(text) for text in reference_sentences(found)),
+        html.table(place_head, places, caption=PLACE_CAPTION, sortable=True),
+        html.table(head, rows, caption=GAPS_CAPTION, sortable=True),
+    ]
+
+
+def _number(value: float) -> Cell:
+    return Cell(f"{value:.3g}", value=value)
+
+
+def audit_summary(audit: Audit) -> list[str]:
+    """Return what shams tell, the verdict and its basis, realism if asked for, the hardest state, the size found."""
+    found = [basis_sentence(audit)]
+    found += [_realism_sentence(audit.realism)] if audit.realism else []
+    found += reference_sentences(audit.reference) if audit.reference else []
+    return [
+        *sham_sentences(audit.shams),
+        audit.verdict,
+        *found,
+        *_hardest_sentence(audit),
+        *([] if audit.gearboxes_needed else _size_sentence(shown_ladders(audit))),
+    ]
+
+
+def basis_sentence(audit: Audit) -> str:
+    """Say how much the audit has judged on, and what so few gearboxes leave open."""
+    text = (
+        f"The audit used {counted(audit.records, 'record')} of {counted(audit.specimens, 'specimen')} (gearboxes) in "
+        f"{counted(audit.channels, 'channel')}."
+    )
+    if audit.specimens >= FEWEST_SPECIMENS:
+        return text
+    return (
+        f"{text} Traps that only appear between gearboxes may not have been found. Detectability needs "
+        f"{FEWEST_SPECIMENS} gearboxes with healthy and {FEWEST_SPECIMENS} with damaged records."
+    )
+
+
+def _realism_sentence(found: Realism) -> str:
+    text = (
+        f"On average over the quantities, {percent(found.mean_inside)} of "
+        f"{counted(found.channel_records, 'healthy channel-record')} lie in the range of measured healthy gearboxes."
+    )
+    if found.left_out:
+        words = ", ".join(dict.fromkeys(found.left_out.values()))
+        text += f" Only accelerations were measured there; left out: {words}."
+    if not found.shares:
+        return text
+    worst = min(found.shares, key=lambda share: share.inside)
+    text += f" The share is lowest for {worst.quantity.title}: {percent(worst.inside)}."
+    if not found.background:
+        return text
+    worst = min(found.background, key=lambda share: share.inside)
+    return (
+        f"{text} Of what stands beside the mesh lines, {percent(found.background_inside)} lie in range on average. The "
+        f"share is lowest for {worst.quantity.title}: {percent(worst.inside)}."
+    )
+
+
+def _hardest_sentence(audit: Audit) -> list[str]:
+    """Name the strongest attacker of the hardest and the easiest state, and say what is lost."""
+    reached = {state: max(audit.probes(state).values()) for state in audit.states if audit.probes(state)}
+    if not reached:
+        return []
+    hardest, easiest = (chosen(reached, key=lambda state: reached[state]) for chosen in (min, max))
+    which = f"The state {hardest} is the hardest to find" if len(reached) > 1 else f"The damaged state is {hardest}"
+    text = f"{which}. {_strongest_words(audit, hardest)}"
+    if hardest != easiest:
+        text += f" The state {easiest} is the easiest. {_strongest_words(audit, easiest)}"
+    lost = [state for state in reached if reached[state] < lost_below(audit, state) and not audit.gearboxes_needed]
+    failed = f"These failed: {joined(list(audit.probes(lost[0])))}." if lost else ""
+    chance = chance_sentence(audit)
+    return [text, *([chance] if chance else []), *([f"No attacker found {joined(lost)}. {failed}"] if lost else [])]
+
+
+def _strongest_words(audit: Audit, state: str) -> str:
+    """Name the strongest attacker of a state, its interval, its band and how many were tried."""
+    probes = audit.probes(state)
+    name = max(probes, key=lambda probe: probes[probe])
+    tried = f"The strongest of {counted(len(probes), 'attacker')} on gearboxes that were not seen is {name}"
+    entry = next((found for found in audit.detections.get(name, []) if found.state == state), None)
+    if entry is None:
+        return f"{tried}, chosen among {counted(audit.best[state].tried, 'column')}: AUC {decimal(probes[name])}."
+    basis = f", most often {entry.basis} among {counted(entry.tried, 'column')}" if entry.basis else ""
+    return f"{tried}: AUC {decimal(entry.auc.value)} ({limits(entry.auc)}){basis}."
+
+
+def _size_sentence(detections: dict[str, list[Detectability]]) -> list[str]:
+    """Say from which length on damage is found at the lower target, by each variant that reaches it."""
+    target, parts = TARGETS[0], []
+    for name, entries in detections.items():
+        for fault, reached in length_at(entries, target).items():
+            if reached:
+                bound = "at most " if reached.is_upper_bound else ""
+                parts.append(f"{bound}{reached.length_mm:.2f}\N{NO-BREAK SPACE}mm of {fault} by {name}")
+    return [f"An AUC of {target:g} is reached from {joined(parts)}. Lengths are along the profile."] if parts else []
+
 
 COLUMNS = 2
 BINS = 40

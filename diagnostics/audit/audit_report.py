@@ -15,20 +15,32 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.audit.attack_tables import shown_ladders
 from diagnostics.audit.audit import ALONE, CHANGE, PAIRED, UNPAIRED, WITH_REFERENCE, Audit, is_referenced
-from diagnostics.audit.audit_page import audit_page, detectability_figure, realism_figure
-from diagnostics.audit.audit_sentences import audit_summary
-from diagnostics.audit.bank_detections import ChanceLimit, bank_detections, chance_limit, damaged_states
-from diagnostics.audit.best_indicator import best_indicators
+from diagnostics.audit.audit_page import audit_page, audit_summary, detectability_figure, realism_figure, shown_ladders
+from diagnostics.audit.bank import (
+    ChanceLimit,
+    ShamFound,
+    bank_detections,
+    chance_limit,
+    damaged_states,
+    sham_traps,
+    shams_found,
+)
 from diagnostics.audit.condition_traps import level_attackers
-from diagnostics.audit.detectability import TARGETS, Detectability, detections, features, length_at, waveform_change
+from diagnostics.audit.detectability import (
+    TARGETS,
+    Detectability,
+    best_indicators,
+    detections,
+    features,
+    length_at,
+    waveform_change,
+)
 from diagnostics.audit.envelope import BENCH, QuantityShare, Realism, realism
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from diagnostics.audit.reference_comparison import reference_comparison, reference_windows, synthetic_windows
-from diagnostics.audit.separability_findings import separability_findings, verdict
-from diagnostics.audit.sham import ShamFound, sham_traps, shams_found
 from diagnostics.audit.signal_attackers import NETWORK, PREPARED, signal_attackers
+from diagnostics.audit.traps import separability_findings, verdict
 from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.single_thread import single_thread

@@ -1,21 +1,260 @@
 """Numbers by which records that do not look at the gears can be told: a table of every layer, one row per record.
 
 Labels of the conditions, texts and digits among them, order of the files, bytes of samples, noise over and between
-channels, and the layers of raw records.
+channels, lags, and the layers of raw records.
+
+* Texts: length, beginning, and parts of the date. A text that is another one in every record tells no state as a whole;
+  its beginning or its day may.
+* Digits: how numbers are written: a column that went through another program in one state keeps its values and loses
+  digits.
+* Noise beside a reference: what the averages of both shafts leave is noise and leftover of the lines, since no tacho of
+  one pulse a turn follows a shaft exactly. A damaged tooth makes lines stronger, so its leftover rises too, by no more
+  decibels than the lines do: with a noise N and a share j of lines of power S, N + j S rises by less than S. So a rise
+  counts as far as it exceeds that of the lines of its band; damage takes no noise away, so a fall counts whole.
+* Lags beside a reference, against the tacho and the other channels: a path and a converter delay all mesh lines of a
+  channel alike. Damage of a few teeth changes their size, and their phase only a little: the lag of the averaged
+  waveform moves by up to a quarter of a sample in severe states. So lags count in whole samples between channels, and
+  in steps of two against the tacho. Estimated by the largest sum of the mesh lines' cross spectrum over trial lags. How
+  near that sum comes to one of lines that are only delayed counts in quarters: a record that runs backwards has no such
+  lag. Source: generalised cross-correlation, standard literature; the steps measured.
+
+Source of all else: derived.
 """
 
 from __future__ import annotations
 
+import re
+from collections import Counter
+from datetime import datetime
+
 import numpy as np
 
+from diagnostics.audit.averaged_lines import line_array
 from diagnostics.audit.finding import must_not_tell
-from diagnostics.audit.label_digits import digit_columns, zero_signs
 from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.noise_excess import noise_excess
-from diagnostics.audit.text_columns import text_columns
-from diagnostics.indicators.background_levels import NOISE_LEVELS
+from diagnostics.indicators.background_levels import HIGHEST_NOISE_SHARE, LOWEST_NOISE_HZ, NOISE_BANDS, NOISE_LEVELS
 from diagnostics.records.sample_bytes import BYTES
 from siggen.keys.column import Role
+
+FEW_DIGITS = 12
+"""A number that was computed has 15 to 17."""
+
+
+def digit_columns(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the numbers of a column (records,) float, (records,) float64 each; those that do not vary are left out.
+
+    Numbers that are zero or undefined have no digits.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        is_single = values.astype(np.float32).astype(np.float64) == values
+    few = np.array([_digits(value) < FEW_DIGITS for value in values.tolist()])
+    written = np.isfinite(values) & (values != 0.0)
+    found = {f"few digits of {name}": few & written, f"single precision of {name}": is_single & written}
+    return _varied(found) | zero_signs(name, values)
+
+
+def zero_signs(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
+    """Return which zeros of a column (records,) float have a minus sign; nothing where none or all have."""
+    return _varied({f"sign of zero of {name}": (values == 0.0) & np.signbit(values)})
+
+
+def _varied(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    return {name: flags.astype(np.float64) for name, flags in columns.items() if flags.any() and not flags.all()}
+
+
+def _digits(value: float) -> int:
+    return len("".join(filter(str.isdigit, repr(value).split("e")[0])).strip("0"))
+
+
+MOST_BEGINNINGS, LONGEST_BEGINNING = 8, 4
+"""Beginnings that are columns, the most frequent first, and characters that a beginning may have."""
+
+DATE_PARTS = ("year", "month", "day", "hour", "minute", "second")
+DATE = re.compile(r"\d{4}-\d{2}-\d{2}([T ]\d{2}:\d{2}(:\d{2})?)?")
+
+
+def text_columns(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the numbers of a column of texts, (records,) float64 each; none where all texts are one.
+
+    Parameters
+    ----------
+    name : str
+        What the column is called.
+    values : (records,) array
+        Texts, dates or times.
+    """
+    texts = [str(value) for value in values.tolist()]
+    if len(set(texts)) < 2:
+        return {}
+    found = {f"length of {name}": np.array([len(text) for text in texts], dtype=np.float64)}
+    for length in range(1, LONGEST_BEGINNING + 1):
+        starts = [text[:length] for text in texts]
+        for start, _ in Counter(starts).most_common(MOST_BEGINNINGS):
+            found[f"{name} begins with {start!r}"] = np.array([own == start for own in starts], dtype=np.float64)
+    found |= _date_columns(name, texts)
+    return {column: numbers for column, numbers in found.items() if np.ptp(numbers[np.isfinite(numbers)]) > 0.0}
+
+
+def _date_columns(name: str, texts: list[str]) -> dict[str, np.ndarray]:
+    """Return the parts of dates that stand in the texts, NaN where there is none; nothing without any date."""
+    dates = [_date(text) for text in texts]
+    if not any(dates):
+        return {}
+    start = datetime(1970, 1, 1)
+    found = {
+        f"{part} of {name}": _as_numbers([getattr(date, part) if date else None for date in dates])
+        for part in DATE_PARTS
+    }
+    return found | {
+        f"day of the week of {name}": _as_numbers([date.weekday() if date else None for date in dates]),
+        f"time of {name}": _as_numbers([(date - start).total_seconds() if date else None for date in dates]),
+    }
+
+
+def _date(text: str) -> datetime | None:
+    seen = DATE.search(text)
+    try:
+        return datetime.fromisoformat(seen.group()) if seen else None
+    except ValueError:
+        return None
+
+
+def _as_numbers(values: list[float | None]) -> np.ndarray:
+    return np.array([np.nan if value is None else value for value in values], dtype=np.float64)
+
+
+TINY = 1e-30
+
+
+def noise_excess(measured: MeasuredSet, reference: np.ndarray, names: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """Return by how much noise rose or fell beyond what lines explain, (records, channels) [dB] by band.
+
+    Parameters
+    ----------
+    measured : MeasuredSet
+    reference : (records,) int
+        Row of the record that each stands beside, -1 without one: undefined there.
+    names : tuple of str
+        Bands, of `NOISE_LEVELS`.
+    """
+    known, found = (reference >= 0)[:, None], {}
+    lines = line_levels(measured)
+    for name in names:
+        rose = measured.values[name] - measured.values[name][reference]
+        by_lines = np.max([own - own[reference] for own in lines[name]], axis=0, initial=0.0)
+        found[name] = np.where(known, np.maximum(rose - by_lines, 0.0) + np.minimum(rose, 0.0), np.nan)
+    return found
+
+
+def line_levels(measured: MeasuredSet) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Return the power of mesh lines and of all other lines of the pinion by band of noise, (records, channels) [dB].
+
+    0 dB where a record has no such line, or no pulses.
+    """
+    power, speed = np.square(np.abs(line_array(measured.waveforms))), measured.values["pulses_per_s"][:, 0]
+    order = np.arange(power.shape[-1])
+    is_mesh = order % measured.teeth[:, None] == 0
+    hz = order * speed[:, None]
+    highest = HIGHEST_NOISE_SHARE * measured.raw.fs_hz
+    edges = np.geomspace(LOWEST_NOISE_HZ, highest, NOISE_BANDS + 1)
+    found = {}
+    for name, low, high in zip(NOISE_LEVELS, edges[:-1], edges[1:], strict=True):
+        inside = (hz >= low) & (hz < high)
+        found[name] = (_decibels(power, inside & is_mesh), _decibels(power, inside & ~is_mesh))
+    return found
+
+
+def _decibels(power: np.ndarray, kept: np.ndarray) -> np.ndarray:
+    total = np.where(kept[:, None], power, 0.0).sum(axis=-1)
+    return np.where(total > 0.0, 10.0 * np.log10(np.maximum(total, TINY)), 0.0)
+
+
+LAGS = "lags"
+HARMONICS, LARGEST_LAG, TRIALS_PER_SAMPLE = 20, 16, 8
+TACHO_STEP = 2.0
+"""Step of the lag to the tacho that counts, in samples; between channels it is one sample."""
+
+LIKENESS_STEP = 0.25
+FINE = 0.1
+"""Samples around the largest sum at which a parabola is laid through it."""
+
+
+def sample_lags(
+    lines: np.ndarray, reference: np.ndarray, teeth: int, samples_per_turn: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return by how many samples a record lies behind its reference, and how like it is then, (channels,) each.
+
+    Parameters
+    ----------
+    lines, reference : (channels, orders) complex
+        Averaged revolution of the pinion, from the tacho's pulse on.
+    teeth : int
+        Of the pinion.
+    samples_per_turn : float
+
+    Returns
+    -------
+    (channels,) float64
+        In samples; NaN without mesh lines.
+    (channels,) float64
+        0 to 1; 1 where all lines are delayed alike.
+    """
+    orders = np.arange(1, HARMONICS + 1) * teeth
+    orders = orders[orders < lines.shape[-1]]
+    across = lines[:, orders] * np.conj(reference[:, orders])
+    weighed = across / np.sqrt(np.abs(across) + 1e-30)
+    trial = np.arange(-LARGEST_LAG * TRIALS_PER_SAMPLE, LARGEST_LAG * TRIALS_PER_SAMPLE + 1) / TRIALS_PER_SAMPLE
+    turned = np.exp(2j * np.pi * orders[:, None] * trial / samples_per_turn)
+    total = (weighed @ turned).real
+    best = trial[np.argmax(total, axis=1)]
+    whole = np.abs(weighed).sum(axis=1)
+    defined = np.isfinite(across).all(axis=1) & (whole > 0.0)
+    around = best[:, None] + FINE * np.arange(-1.0, 2.0)
+    peak = np.einsum(
+        "co,cot->ct", weighed, np.exp(2j * np.pi * orders[:, None] * around[:, None] / samples_per_turn)
+    ).real
+    bend = peak[:, 0] - 2.0 * peak[:, 1] + peak[:, 2]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shift = np.where(bend < 0.0, 0.5 * FINE * (peak[:, 0] - peak[:, 2]) / bend, 0.0)
+        likeness = total.max(axis=1) / whole
+    fine = best + np.clip(shift, -1.0 / TRIALS_PER_SAMPLE, 1.0 / TRIALS_PER_SAMPLE)
+    return np.where(defined, fine, np.nan), np.where(defined, likeness, np.nan)
+
+
+def channel_lags(measured: MeasuredSet, reference: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return lag and likeness of every channel beside the record's reference, (records, channels) each."""
+    lines, teeth = line_array(measured.waveforms), measured.teeth
+    per_turn = measured.raw.fs_hz / measured.values["pulses_per_s"][:, 0]
+    found = np.full((2, *lines.shape[:2]), np.nan)
+    for row in np.flatnonzero((reference >= 0) & np.isfinite(per_turn)).tolist():
+        found[:, row] = sample_lags(lines[row], lines[reference[row]], int(teeth[row]), float(per_turn[row]))
+    return found[0], found[1]
+
+
+def lag_columns(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.ndarray]:
+    """Return lags and likeness in steps that count, by name, (records,) each."""
+    lags, likeness = channel_lags(measured, reference)
+    channels = measured.channels
+    found = {"lag to the tacho": TACHO_STEP * np.round(np.median(lags, axis=1) / TACHO_STEP)}
+    for first in range(len(channels)):
+        name = f"likeness of {channels[first]} to its own healthy record"
+        found[name] = LIKENESS_STEP * np.round(likeness[:, first] / LIKENESS_STEP)
+        for second in range(first + 1, len(channels)):
+            apart = np.round(lags[:, first] - lags[:, second])
+            found[f"lag of {channels[first]} to {channels[second]}"] = apart
+    return found
+
+
+def fine_lags(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.ndarray]:
+    """Return lags to the tacho and to the first channel without steps, by name, (records,) each [samples]."""
+    lags, _ = channel_lags(measured, reference)
+    found = {"lag to the tacho": np.median(lags, axis=1)}
+    return found | {
+        f"lag of {channel} to {measured.channels[0]}": lags[:, k] - lags[:, 0]
+        for k, channel in enumerate(measured.channels)
+        if k
+    }
+
 
 METADATA, TEXTS, BYTE, ORDER, NOISE, CHANNELS = "metadata", "texts", "bytes", "order", "noise", "channels"
 STEADY_BYTES = BYTES[:2]

@@ -7,21 +7,29 @@ docs/understand/audit.md. Source: maximum statistic and Bonferroni, standard lit
 
 Of each layer its best column and all its columns together are tried, as they are and as differences from a healthy
 record of the same gearbox.
+
+Levels, lags and noise may tell damage, since damage moves them. But what damage does vanishes with its size, so that
+what a small one moves a larger one moves more, up or down. A gain, a delay or a noise that all damaged states have
+alike moves the smallest as far as the largest. So of them only columns are looked at in which no larger state differs
+from the smallest one; they are found anew in every trial and permutation, on the gearboxes to learn from. A leak that
+grows with the damage is not seen here. Source: derived.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from diagnostics.audit.audit import REFERENCED
-from diagnostics.audit.bank_detections import DESIGN, bank_maxima, damaged_states, permuted
-from diagnostics.audit.channel_lags import LAGS, lag_columns
+from diagnostics.audit.averaged_lines import line_array
+from diagnostics.audit.bank import damaged_states, detection_by, permuted_maxima
 from diagnostics.audit.condition_layers import (
     BYTE,
     CHANNELS,
+    LAGS,
     METADATA,
     NOISE,
     ORDER,
@@ -29,15 +37,145 @@ from diagnostics.audit.condition_layers import (
     condition_changes,
     condition_layers,
     filled_columns,
+    fine_lags,
+    lag_columns,
 )
+from diagnostics.audit.detectability import Detectability
 from diagnostics.audit.finding import Finding
-from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks, reference_records
-from diagnostics.audit.raw_columns import CLOCK, EDGES, ENDS, LINES, OFFSETS, STORED
-from diagnostics.audit.small_damage import LEVELS, small_damage_attackers
-from diagnostics.audit.state_ties import unchanged
-from diagnostics.audit.time_templates import TEMPLATES, template_attackers
-from diagnostics.judging.evaluation import Entry, HeldOut, held_out, judged_rows
+from diagnostics.audit.measured_set import MeasuredSet, reference_records
+from diagnostics.audit.raw_records import CLOCK, EDGES, ENDS, LINES, OFFSETS, STORED, TEMPLATES, template_attackers
+from diagnostics.indicators.background_levels import NOISE_LEVELS
+from diagnostics.judging.evaluation import Entry
 from diagnostics.judging.learners import all_columns, best_column
+from diagnostics.statistics.evaluation import column_auc
+
+LEVELS = "levels"
+LARGER = 2.0
+"""Times the mean damaged area of the smallest state from which a state of its kind must show more."""
+
+DEVIATIONS = 2.0
+"""Standard deviations of the AUC of records that are alike within which a larger state counts as like the smallest."""
+
+MESH_LINES = 12
+TINY = 1e-30
+
+
+@dataclass(frozen=True, slots=True)
+class SizedStates:
+    """The state of the least damage of a kind, and those of the kind that are much larger."""
+
+    smallest: str
+    larger: tuple[str, ...]
+
+
+def sized_states(measured: MeasuredSet) -> list[SizedStates]:
+    """Return the smallest state of every kind of fault that has larger ones, by mean damaged area."""
+    labels = measured.labels
+    found: list[SizedStates] = []
+    if "damaged_area_mm2" not in labels:
+        return found
+    for fault in dict.fromkeys(labels["fault"][~measured.healthy].tolist()):
+        rows = np.flatnonzero(labels["fault"] == fault)
+        states = labels["state"][rows]
+        area = {
+            state: float(np.mean(labels["damaged_area_mm2"][rows[states == state]]))
+            for state in dict.fromkeys(states.tolist())
+        }
+        smallest = min(area, key=lambda state: area[state])
+        larger = tuple(state for state, mean in area.items() if mean >= LARGER * area[smallest] > 0.0)
+        if larger:
+            found.append(SizedStates(smallest, larger))
+    return found
+
+
+def small_damage_attackers(measured: MeasuredSet, reference: np.ndarray) -> list[Entry]:
+    """Return an attacker for every smallest state, on changes from the reference (records,); -1 without one."""
+    values, names = movable_changes(measured, reference)
+    if not names:
+        return []
+    return [_attacker(measured, sizes, values, names) for sizes in sized_states(measured)]
+
+
+def movable_changes(measured: MeasuredSet, reference: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Return what damage can move, as changes from the reference, (records, columns), and names."""
+    known = reference >= 0
+    found = {f"change of the {name}": values - values[reference] for name, values in measured.raw.levels.items()}
+    for name in (name for name in NOISE_LEVELS if name in measured.values):
+        change = measured.values[name] - measured.values[name][reference]
+        found |= {f"change of the {name} of {channel}": change[:, k] for k, channel in enumerate(measured.channels)}
+    found |= _mesh_changes(measured, reference)
+    found |= fine_lags(measured, reference)
+    columns = {name: np.where(known, values, np.nan) for name, values in found.items()}
+    columns = {name: values for name, values in columns.items() if known.any() and np.isfinite(values[known]).all()}
+    return (np.stack(list(columns.values()), axis=1) if columns else np.empty((0, 0))), tuple(columns)
+
+
+def _mesh_changes(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.ndarray]:
+    """Return changes of mesh lines in dB: each of a channel, their median, and that beside the other channels."""
+    lines, teeth = line_array(measured.waveforms), measured.teeth
+    most = int(min(MESH_LINES, (lines.shape[-1] - 1) // teeth.max()))
+    if most < 1:
+        return {}
+    place = teeth[:, None, None] * np.arange(1, most + 1)
+    level = 20.0 * np.log10(
+        np.abs(np.take_along_axis(lines, np.broadcast_to(place, (*lines.shape[:2], most)), 2)) + TINY
+    )
+    change = level - level[reference]
+    middle = np.median(change, axis=2)
+    found: dict[str, np.ndarray] = {}
+    for k, channel in enumerate(measured.channels):
+        found |= {f"change of mesh line {h + 1} of {channel}": change[:, k, h] for h in range(most)}
+        found[f"median change of the mesh lines of {channel}"] = middle[:, k]
+        if k:
+            found[f"the same of {channel} less {measured.channels[0]}"] = np.median(change[:, k] - change[:, 0], axis=1)
+    return found
+
+
+class _LikeLarger:
+    """The column that tells the smallest state best, of those in which no larger state differs from it."""
+
+    def __init__(self, values: np.ndarray, names: Sequence[str], larger: Sequence[np.ndarray], specimen: np.ndarray):
+        self.values, self.names, self.larger, self.specimen = values, names, larger, specimen
+
+    def fit(self, X: np.ndarray, y: np.ndarray, groups: np.ndarray) -> _LikeLarger:
+        """Choose by places (n,) and y (ways, n); of larger damage the gearboxes to learn from."""
+        area = column_auc(self.values[X], y)
+        shown = [rows[np.isin(self.specimen[rows], groups)] for rows in self.larger]
+        alike = np.all([_alike(self.values[rows], self.values[X], y) for rows in shown if rows.size], axis=0)
+        self.best = np.argmax(np.where(alike, np.abs(area - 0.5), -1.0), axis=1)
+        turned = np.where(alike, np.sign(area - 0.5), 0.0)
+        self.turned = np.take_along_axis(turned, self.best[:, None], axis=1)
+        self.basis = self.names[self.best[0]] if self.turned[0, 0] else "nothing"
+        return self
+
+    def score(self, X: np.ndarray) -> np.ndarray:
+        """Return the column, turned so that damage is large, (ways, m)."""
+        return np.asarray(self.turned * self.values[X][:, self.best].T)
+
+
+def _attacker(measured: MeasuredSet, sizes: SizedStates, values: np.ndarray, names: tuple[str, ...]) -> Entry:
+    state = measured.labels["state"]
+    defined = np.isfinite(values).all(axis=1)
+    larger = [np.flatnonzero(defined & (state == one)) for one in sizes.larger]
+    usable = defined & (measured.healthy | (state == sizes.smallest))
+    make = partial(_LikeLarger, values, names, larger, measured.labels["specimen_id"])
+    return Entry(f"change of {LEVELS}", make, np.arange(len(values)), usable, len(names))
+
+
+def _alike(larger: np.ndarray, learnt: np.ndarray, positive: np.ndarray) -> np.ndarray:
+    """Return in which columns larger damage is like the smallest, and moves no further, (turns, columns) bool."""
+    count = positive.sum(axis=1, keepdims=True)
+    # the variance of an AUC of 0.5: (n + m + 1) / (12 n m)
+    allowed = DEVIATIONS * np.sqrt((len(larger) + count + 1) / (12.0 * len(larger) * count))
+    apart = positive @ _wins(larger, learnt) / count - 0.5
+    further = positive @ _wins(np.abs(larger), np.abs(learnt)) / count - 0.5
+    return np.asarray((np.abs(apart) <= allowed) & (further <= allowed))
+
+
+def _wins(larger: np.ndarray, learnt: np.ndarray) -> np.ndarray:
+    """Return the share of larger damage that lies above each record to learn from, (records, columns)."""
+    return np.stack([0.5 + 0.5 * np.sign(larger - row).mean(axis=0) for row in learnt])
+
 
 OF_TEETH = frozenset({NOISE, CHANNELS, ENDS, LINES, LAGS, LEVELS})
 """Layers that single damaged teeth cannot move, and other faults can."""
@@ -105,7 +243,7 @@ def of_single_teeth(measured: MeasuredSet) -> np.ndarray:
     if not teeth:
         return np.ones(len(measured.healthy), dtype=bool)
     listed = np.array([[len(row) > 0 for row in values] for values in teeth]).any(axis=0)
-    return np.asarray(listed & unchanged(measured))
+    return np.asarray(listed & measured.unchanged)
 
 
 def level_attackers(measured: MeasuredSet, *, referenced: bool) -> list[Entry]:
@@ -120,75 +258,33 @@ def level_attackers(measured: MeasuredSet, *, referenced: bool) -> list[Entry]:
     return [best_column(f"raw levels{suffix}", values, names), all_columns(f"all raw levels{suffix}", values)]
 
 
-@dataclass(frozen=True, slots=True)
-class Strongest:
-    """The strongest attacker of a layer, the state that it tells best, and what it reaches there."""
-
-    layer: str
-    attacker: Entry
-    state: str
-    found: HeldOut
-
-
 def condition_traps(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
     """Return a finding for every layer whose strongest attacker tells a state by more than chance explains."""
     bank = condition_attackers(measured)
-    suspects = [entry for entry in map(_largest, _judged(measured, bank, seed)) if entry]
-    suspects = [entry for entry in suspects if entry.found.auc.value >= SMALLEST_AUC]
-    if not suspects:
-        return []
     asked = [attacker for attackers in bank.values() for attacker in attackers]
-    limits = {state: chance_largest(measured, asked, state, seed) for state in {entry.state for entry in suspects}}
-    accused = [entry for entry in suspects if entry.found.auc.value > limits[entry.state]]
-    return [_finding(entry, len(asked), limits[entry.state]) for entry in accused]
-
-
-def _judged(measured: MeasuredSet, bank: dict[str, list[Entry]], seed: int) -> Iterator[list[Strongest]]:
-    """Yield, layer by layer, what every attacker reaches for every state."""
-    specimen = measured.labels["specimen_id"]
-    folds = DESIGN.dealt(specimen, seed)
+    turns, limits, found = PERMUTATIONS * len(damaged_states(measured)), dict[str, float](), []
     for layer, attackers in bank.items():
-        entries = []
-        for state in damaged_states(measured):
-            of_state = np.asarray(measured.labels["state"] == state)
-            for attacker in attackers:
-                rows = judged_rows(attacker, measured.healthy, of_state, specimen)
-                if rows.size:
-                    found = held_out(attacker, rows, of_state[rows], specimen[rows], folds[:, rows], seed)
-                    entries.append(Strongest(layer, attacker, state, found))
-        yield entries
+        every = (
+            (one, detection_by(measured, one, state, seed)) for state in damaged_states(measured) for one in attackers
+        )
+        defined = [(one, entry) for one, entry in every if entry.auc.value >= SMALLEST_AUC]
+        if not defined:
+            continue
+        strongest, entry = max(defined, key=lambda pair: pair[1].auc.value)
+        if entry.state not in limits:
+            maxima = permuted_maxima(measured, asked, entry.state, seed, turns)[0][1:]
+            limits[entry.state] = float(np.max(maxima, where=np.isfinite(maxima), initial=0.0))
+        if entry.auc.value > limits[entry.state]:
+            found.append(_finding(layer, strongest.name, entry, len(asked), limits[entry.state]))
+    return found
 
 
-def _largest(entries: list[Strongest]) -> Strongest | None:
-    defined = [entry for entry in entries if np.isfinite(entry.found.auc.value)]
-    return max(defined, key=lambda entry: entry.found.auc.value, default=None)
-
-
-def chance_largest(measured: MeasuredSet, attackers: list[Entry], state: str, seed: int) -> float:
-    """Return the largest AUC over attackers and permutations of healthy records and those of one state.
-
-    Parameters
-    ----------
-    measured : MeasuredSet
-    attackers : list of Entry
-    state : str
-    seed : int
-    """
-    specimen, of_state = measured.labels["specimen_id"], np.asarray(measured.labels["state"] == state)
-    able = [attacker for attacker in attackers if judged_rows(attacker, measured.healthy, of_state, specimen).size]
-    rows = np.flatnonzero(measured.healthy | of_state)
-    turns = PERMUTATIONS * len(damaged_states(measured))
-    ways = permuted(~measured.healthy[rows], exchange_blocks(measured)[rows], specimen[rows], seed, turns)
-    maxima = bank_maxima(able, rows, ways, specimen[rows], DESIGN.dealt(specimen, seed)[:, rows])
-    return float(np.max(maxima, where=np.isfinite(maxima), initial=0.0))
-
-
-def _finding(entry: Strongest, tried: int, limit: float) -> Finding:
-    auc, basis = entry.found.auc, f", by {entry.found.basis}" if entry.found.basis else ""
+def _finding(layer: str, name: str, entry: Detectability, tried: int, limit: float) -> Finding:
+    auc, basis = entry.auc, f", by {entry.basis}" if entry.basis else ""
     return Finding(
-        f"state_told_by_{entry.layer}",
-        f"{entry.attacker.name} alone tells {entry.state} from healthy on gearboxes that were not seen with an AUC of "
+        f"state_told_by_{layer}",
+        f"{name} alone tells {entry.state} from healthy on gearboxes that were not seen with an AUC of "
         f"{auc.value:.2f} ({auc.low:.2f} to {auc.high:.2f}){basis}",
         f"with permuted states the strongest of {tried} attackers reaches at most {limit:.2f}",
-        MENDS[entry.layer],
+        MENDS[layer],
     )

@@ -24,6 +24,10 @@ MENDS = {
 MEND = "Draw this quantity by one law for all states, or say that it follows from the damage (its role)."
 
 
+LARGEST_AUC = 0.9
+"""What one number, or chance, may reach."""
+
+
 def must_not_tell(roles: Mapping[str, Role], name: str) -> bool:
     """Return whether a label column must not tell the state."""
     return roles.get(name, Role.CONDITION) in TOLD_BY_NOTHING

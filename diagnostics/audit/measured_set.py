@@ -1,19 +1,22 @@
 """What the audit reads of the one table: labels, conditions, levels, indicators, averaged waveforms, noise sketches.
 
 For every record a healthy record of the same specimen at the same operating point, and which records are alike.
+
+A program that writes tables may leave in their metadata which records it treated, by their ids: siggen's own metadata
+name none. What others name counts as a label.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
-from diagnostics.audit.noted_records import noted_records
-from diagnostics.audit.raw_columns import RawColumns, raw_columns
+from diagnostics.audit.raw_records import RawColumns, raw_columns
 from diagnostics.indicators.classifier_table import check_table
 from diagnostics.indicators.line_levels import LEVELS
 from diagnostics.indicators.matrix import FeatureMatrix
@@ -30,8 +33,43 @@ from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
 from siggen.keys.column import Role
 
+OWN_METADATA = frozenset({b"unit", b"meaning", b"role", b"section"})
+FEWEST_NAMED = 2
+"""Ids in a text from which it counts; one number may be anything."""
+
+
+def noted_records(schemas: Iterable[pa.Schema], record_id: np.ndarray) -> dict[str, np.ndarray]:
+    """Return which records (records,) each text of the metadata names, (records,) bool by the text's place.
+
+    Parameters
+    ----------
+    schemas : iterable of pyarrow.Schema
+        Of the labels of every split; texts of one place are taken together.
+    record_id : (records,) int
+    """
+    found: dict[str, np.ndarray] = {}
+    for place, text in (entry for schema in schemas for entry in _metadata_texts(schema)):
+        found[place] = found.get(place, False) | np.isin(record_id, _ids(text))
+    return {place: named for place, named in found.items() if FEWEST_NAMED <= named.sum() < named.size}
+
+
+def _metadata_texts(schema: pa.Schema) -> Iterator[tuple[str, str]]:
+    for key, value in (schema.metadata or {}).items():
+        yield f"named in `{key.decode(errors='replace')}` of the file", value.decode(errors="replace")
+    for column in schema:
+        for key, value in (column.metadata or {}).items():
+            if key not in OWN_METADATA:
+                yield f"named in `{key.decode(errors='replace')}` of {column.name}", value.decode(errors="replace")
+
+
+def _ids(text: str) -> list[int]:
+    return [int(number) for number in re.findall(r"(?<![\w.])\d{1,18}(?![\w.])", text)]
+
+
 TORQUE_TOLERANCE = 0.01
 SPEED_TOLERANCE = 0.002
+CHANGED = "changed_keys"
+"""Label of what a state changes on purpose."""
 
 
 def reference_records(measured: MeasuredSet) -> np.ndarray:
@@ -165,6 +203,12 @@ class MeasuredSet:
     def healthy(self) -> np.ndarray:
         """(records,) bool: which records show no damage."""
         return np.asarray(self.labels["fault"] == HEALTHY)
+
+    @property
+    def unchanged(self) -> np.ndarray:
+        """(records,) bool: which records are of states that change no key of the machine."""
+        changed = self.labels.get(CHANGED)
+        return np.ones(len(self.healthy), dtype=bool) if changed is None else np.array([not one for one in changed])
 
     def states(self) -> tuple[str, ...]:
         """Return the states in the order of the configuration."""

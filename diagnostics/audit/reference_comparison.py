@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnostics.audit.bank_detections import DESIGN
+from diagnostics.audit.bank import DESIGN
 from diagnostics.judging.evaluation import Entry, held_out_values
 from diagnostics.judging.learners import GroupRidge, products
 from diagnostics.recordings.file_columns import READERS

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnostics.audit.residual_lines import Bank, band_bank, kurtogram_maximum, line_array, residual_lines
+from diagnostics.audit.averaged_lines import Bank, band_bank, kurtogram_maximum, line_array, residual_lines
 from diagnostics.audit.signal_attackers import convolution_features, level_waves, over_channels
 from diagnostics.base.progress import Stage
 from diagnostics.indicators.classifier_table import check_table, classifier_table, feature_matrix

@@ -76,8 +76,8 @@ def audit(
 
     Example: siggen-diagnostics audit runs/quickstart --strict --realism
     """
+    from diagnostics.audit.audit_page import audit_summary
     from diagnostics.audit.audit_report import AuditOptions, audit_set, write_audit
-    from diagnostics.audit.audit_sentences import audit_summary
     from diagnostics.base.beside import beside
     from diagnostics.base.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators

@@ -20,11 +20,11 @@ from typing import Any
 import numpy as np
 
 import siggen
-from diagnostics.audit.bank_detections import chance_limit
+from diagnostics.audit.averaged_lines import line_array, residual_lines
+from diagnostics.audit.bank import chance_limit
 from diagnostics.audit.measured_set import MeasuredSet, measured_set, reference_records
-from diagnostics.audit.residual_lines import line_array, residual_lines
-from diagnostics.audit.separability_findings import separability_findings
 from diagnostics.audit.signal_attackers import attackers_on, signal_attackers
+from diagnostics.audit.traps import separability_findings
 from diagnostics.base.single_thread import single_thread
 from diagnostics.judging.evaluation import Entry
 from diagnostics.statistics.scores import clopper_pearson

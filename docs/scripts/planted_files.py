@@ -20,7 +20,7 @@ sys.path.insert(0, str(ROOT))  # the leaks are those of the tests
 
 import siggen  # noqa: E402
 from diagnostics.audit.measured_set import measured_set  # noqa: E402
-from diagnostics.audit.separability_findings import separability_findings  # noqa: E402
+from diagnostics.audit.traps import separability_findings  # noqa: E402
 from diagnostics.base.single_thread import single_thread  # noqa: E402
 from tests.diagnostics.planted.label_leaks import LABEL_LEAKS  # noqa: E402
 from tests.diagnostics.planted.leak import Leak  # noqa: E402

@@ -12,7 +12,7 @@ import pytest
 import siggen
 from diagnostics.audit.envelope import realism
 from diagnostics.audit.measured_set import measured_set
-from diagnostics.audit.separability_findings import separability_findings, verdict
+from diagnostics.audit.traps import separability_findings, verdict
 from siggen.checks.loading import load_config
 from siggen.checks.plausibility import implausible
 from siggen.config.inheritance import inherited

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from planted_set import Plant, PlantedSet, planted
 
-from diagnostics.audit import bank_detections, condition_traps, signal_attackers
+from diagnostics.audit import bank, condition_traps, signal_attackers
 from diagnostics.cli.app import main
 from siggen.dataset import reading
 
@@ -29,7 +29,7 @@ def clean() -> PlantedSet:
 def quick_bank(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few steps of training and few permutations: what they find is tested with the attackers."""
     monkeypatch.setattr(condition_traps, "PERMUTATIONS", 19)
-    monkeypatch.setattr(bank_detections, "PERMUTATIONS", 19)
+    monkeypatch.setattr(bank, "PERMUTATIONS", 19)
     monkeypatch.setattr(signal_attackers, "SHOWN", 0)
     monkeypatch.setattr(signal_attackers, "FEWEST_EPOCHS", 1)
     monkeypatch.setattr(signal_attackers, "DILATIONS", (1, 8))

@@ -7,14 +7,11 @@ from dataclasses import replace
 
 import pytest
 
-from diagnostics.audit.attack_tables import verdict_words
+from diagnostics.audit.audit_page import audit_summary, verdict_words
 from diagnostics.audit.audit_report import Audit
-from diagnostics.audit.audit_sentences import audit_summary
-from diagnostics.audit.bank_detections import ChanceLimit, StateChance, gearboxes_needed
-from diagnostics.audit.best_indicator import BestIndicator
-from diagnostics.audit.detectability import Detectability
-from diagnostics.audit.separability_findings import verdict
-from diagnostics.audit.sham import ShamFound
+from diagnostics.audit.bank import ChanceLimit, ShamFound, StateChance, gearboxes_needed
+from diagnostics.audit.detectability import BestIndicator, Detectability
+from diagnostics.audit.traps import verdict
 from diagnostics.statistics.evaluation import Interval
 
 

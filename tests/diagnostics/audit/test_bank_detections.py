@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from diagnostics.audit.bank_detections import exceeded_by_chance
+from diagnostics.audit.bank import exceeded_by_chance
 
 DRAWS = 40_000
 

@@ -8,7 +8,7 @@ from typing import cast
 import numpy as np
 import pytest
 
-from diagnostics.audit.bank_detections import DESIGN, bank_maxima, permuted
+from diagnostics.audit.bank import DESIGN, bank_maxima, permuted
 from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks, reference_records
 from diagnostics.judging.learners import best_column
 

@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 from scipy.signal import freqz, zpk2tf
 
-from diagnostics.audit.innovations import innovations
+from diagnostics.audit.averaged_lines import innovations, whitened
 from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.residual_lines import whitened
-from diagnostics.audit.tooth_attacker import tooth_attacker
+from diagnostics.audit.signal_attackers import tooth_attacker
 
 TEETH, STEPS = 18, 1024
 GEARBOXES, RECORDS = 20, 3

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.audit.bank_detections import DESIGN, permuted
+from diagnostics.audit.bank import DESIGN, permuted
+from diagnostics.audit.condition_layers import noise_excess
+from diagnostics.audit.condition_traps import sized_states, small_damage_attackers
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
-from diagnostics.audit.noise_excess import noise_excess
-from diagnostics.audit.raw_columns import RawColumns
-from diagnostics.audit.small_damage import sized_states, small_damage_attackers
+from diagnostics.audit.raw_records import RawColumns
 from diagnostics.judging.evaluation import held_out
 
 GEARBOXES = 24

@@ -11,8 +11,8 @@ from planted_set import CHANNELS, FS_HZ, Plant, PlantedSet, measured, planted
 
 from diagnostics.audit import condition_traps
 from diagnostics.audit.measured_set import measured_set
-from diagnostics.audit.raw_columns import raw_columns
-from diagnostics.audit.separability_findings import repeated_runs, separability_findings
+from diagnostics.audit.raw_records import raw_columns
+from diagnostics.audit.traps import repeated_runs, separability_findings
 from diagnostics.records.recording import recordings
 
 FADED = 48

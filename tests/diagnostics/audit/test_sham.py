@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnostics.audit.bank import sham_sentences, sham_traps, shams_found
 from diagnostics.audit.condition_traps import level_attackers
 from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.raw_columns import RawColumns
-from diagnostics.audit.sham import sham_sentences, sham_traps, shams_found
+from diagnostics.audit.raw_records import RawColumns
 from diagnostics.judging.alarms import judged_alarm
 from diagnostics.judging.learners import best_column
 

@@ -10,12 +10,18 @@ from planted_set import Plant, measured
 from planted_traps import FOUND_AS, TRAPS, with_permuted_states
 
 from diagnostics.audit import condition_traps
-from diagnostics.audit import separability_findings as findings
+from diagnostics.audit import traps as findings
 from diagnostics.audit.condition_traps import condition_layers
 from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.separability_findings import separability_findings, verdict
-from diagnostics.audit.simple_thresholds import simple_thresholds
-from diagnostics.audit.state_ties import chance_bound, likeness, permuted_states, told_shares
+from diagnostics.audit.traps import (
+    chance_bound,
+    likeness,
+    permuted_states,
+    separability_findings,
+    simple_thresholds,
+    told_shares,
+    verdict,
+)
 from tests.diagnostics.column_roles import ListedRoles
 
 LAYER = "state_told_by_"

@@ -13,7 +13,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from diagnostics.audit import bank_detections, condition_traps, signal_attackers
+from diagnostics.audit import bank, condition_traps, signal_attackers
 from diagnostics.cli.app import main
 from diagnostics.indicators import channel_signals, table
 from diagnostics.indicators.ranking_table import ranking_table
@@ -81,7 +81,7 @@ def test_ranking_training_audit_and_features_resample_and_average_once_per_recor
     monkeypatch.setattr(signal_attackers, "SHOWN", 0)
     monkeypatch.setattr(signal_attackers, "DILATIONS", (1, 8))
     monkeypatch.setattr(condition_traps, "PERMUTATIONS", 19)
-    monkeypatch.setattr(bank_detections, "PERMUTATIONS", 19)
+    monkeypatch.setattr(bank, "PERMUTATIONS", 19)
     for command, *options in (
         ("indicators", "--out", "ranking"),
         ("report", "--models-only", "--no-cnn", "--out", "models"),

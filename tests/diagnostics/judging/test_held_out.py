@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.audit.bank_detections import DESIGN, bank_maxima, exchanged_unit, permuted
+from diagnostics.audit.bank import DESIGN, bank_maxima, exchanged_unit, permuted
 from diagnostics.judging.evaluation import held_out, held_out_values, judged_rows, rounds
 from diagnostics.judging.learners import PENALTIES, BestColumn, GroupRidge, all_columns, best_column, products
 

@@ -1,31 +1,36 @@
-"""What a bank of attackers reaches for every state, and what the strongest of them reaches by chance.
-
-How many gearboxes an audit needs, where so few were judged that chance alone looks like damage.
-
-What the strongest of several attackers reaches by chance: states exchanged among alike records, all as one test.
+"""What a bank of attackers reaches for every state and on shams, and what the strongest of them reaches by chance.
 
 The best of a dozen attackers lies above 0.5 even where there is nothing to find. So the largest AUC over all of them is
-compared with its own law under exchanged states. The test is exact where records of a block are alike but for the
-state: then the stated states are one of the ways of stating them, each as likely as the others. Attackers that are too
-slow for that are left out of both sides. Source: permutation tests with the maximum statistic, standard literature
-(Westfall and Young 1993; Phipson and Smyth 2010 for counting the stated states among the ways).
+compared with its own law under exchanged states, among alike records, all as one test. The test is exact where records
+of a block are alike but for the state: then the stated states are one of the ways of stating them, each as likely as
+the others. Attackers that are too slow for that are left out of both sides. Source: permutation tests with the maximum
+statistic, standard literature (Westfall and Young 1993; Phipson and Smyth 2010 for counting the stated states among the
+ways).
+
+A sham is damage that was drawn and passed on with nothing removed, which none should find. It is judged as a damaged
+state is, against the other healthy records: by attackers that see a record alone, and by those that see it beside a
+healthy record. Where it is told from healthy, the pipeline leaks. Damage counts as found where an attacker exceeds what
+it reaches on a sham.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
 from diagnostics.audit.detectability import TARGETS, Detectability, damage_sizes, in_order
+from diagnostics.audit.finding import LARGEST_AUC, Finding
 from diagnostics.audit.measured_set import MeasuredSet, exchange_blocks
-from diagnostics.audit.simple_thresholds import LARGEST_AUC
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.judging.evaluation import Design, Entry, held_out, held_out_values, judged_rows
-from diagnostics.records.state_classes import damage_kind
+from diagnostics.judging.evaluation import Design, Entry, HeldOut, held_out, held_out_values, judged_rows
+from diagnostics.page.wording import decimal, limits
+from diagnostics.records.state_classes import HEALTHY, SHAM, damage_kind
 from diagnostics.statistics.evaluation import Interval
+from diagnostics.statistics.indicator_result import UNDEFINED
 
 DESIGN = Design(folds=4, owner=1000, deals=3, fewest=2)
 PERMUTATIONS = 499
@@ -149,7 +154,7 @@ class StateChance:
     p_value : float
         (1 + permutations that reach at least what the stated states do) / (1 + permutations).
     exchanged : str
-        Within what states were exchanged, as of `diagnostics.audit.bank_detections.exchanged_unit`.
+        Within what states were exchanged, as of `diagnostics.audit.bank.exchanged_unit`.
     """
 
     auc: float
@@ -204,26 +209,30 @@ def bank_detections(
     advance : callable
         Called after every attacker.
     """
-    folds = DESIGN.dealt(measured.labels["specimen_id"], seed)
     found = {}
     for attacker in attackers:
-        entries = [detection_by(measured, attacker, state, folds, seed) for state in damaged_states(measured)]
+        entries = [detection_by(measured, attacker, state, seed) for state in damaged_states(measured)]
         if any(math.isfinite(entry.auc.value) for entry in entries):
             found[attacker.name] = in_order(entries)
         advance()
     return found
 
 
-def detection_by(measured: MeasuredSet, attacker: Entry, state: str, folds: np.ndarray, seed: int) -> Detectability:
-    """Return the detection of one state by one attacker; folds as of `Design.dealt`."""
-    labels = measured.labels
-    of_state = np.asarray(labels["state"] == state) & ~measured.healthy
-    rows = judged_rows(attacker, measured.healthy, of_state, labels["specimen_id"])
+def detection_by(measured: MeasuredSet, attacker: Entry, state: str, seed: int) -> Detectability:
+    """Return the detection of one state by one attacker; the AUC is NaN with too few gearboxes."""
+    labels, specimen = measured.labels, measured.labels["specimen_id"]
+    of_state = _of_state(measured, state)
+    rows = judged_rows(attacker, measured.healthy, of_state, specimen)
+    found = HeldOut(UNDEFINED, "", 0)
+    if rows.size:
+        folds = DESIGN.dealt(specimen, seed)[:, rows]
+        found = held_out(attacker, rows, of_state[rows], specimen[rows], folds, seed)
     sizes, kind = damage_sizes(measured, of_state), damage_kind(labels, of_state)
-    if rows.size == 0:
-        return Detectability(state, kind, sizes, Interval(math.nan, math.nan, math.nan), 0, "", attacker.tried)
-    found = held_out(attacker, rows, of_state[rows], labels["specimen_id"][rows], folds[:, rows], seed)
     return Detectability(state, kind, sizes, found.auc, found.specimens, found.basis, attacker.tried)
+
+
+def _of_state(measured: MeasuredSet, state: str) -> np.ndarray:
+    return np.asarray((measured.labels["state"] == state) & ~measured.healthy)
 
 
 def chance_limit(
@@ -239,10 +248,9 @@ def chance_limit(
         Called after every state.
     """
     asked = [attacker for attacker in attackers if attacker.many]
-    folds, blocks = DESIGN.dealt(measured.labels["specimen_id"], seed), exchange_blocks(measured)
     found = {}
     for state in damaged_states(measured):
-        law = state_chance(measured, asked, state, folds, blocks, seed)
+        law = state_chance(measured, asked, state, seed)
         if law is not None:
             found[state] = law
         advance()
@@ -250,22 +258,32 @@ def chance_limit(
     return ChanceLimit(least, len(asked), PERMUTATIONS if found else 0, found)
 
 
-def state_chance(
-    measured: MeasuredSet, asked: Sequence[Entry], state: str, folds: np.ndarray, blocks: np.ndarray, seed: int
-) -> StateChance | None:
+def state_chance(measured: MeasuredSet, asked: Sequence[Entry], state: str, seed: int) -> StateChance | None:
     """Return what the strongest of some attackers reaches on a state by chance; None where none could be asked."""
-    specimen, of_state = measured.labels["specimen_id"], np.asarray(measured.labels["state"] == state)
-    of_state = of_state & ~measured.healthy
-    able = [attacker for attacker in asked if judged_rows(attacker, measured.healthy, of_state, specimen).size]
-    if not able:
+    maxima, unit = permuted_maxima(measured, asked, state, seed, PERMUTATIONS)
+    if not unit:
         return None
-    rows = np.flatnonzero(measured.healthy | of_state)
-    ways = permuted(of_state[rows], blocks[rows], specimen[rows], seed, PERMUTATIONS)
-    maxima = bank_maxima(able, rows, np.concatenate([of_state[None, rows], ways]), specimen[rows], folds[:, rows])
     stated, drawn = maxima[0], maxima[1:][np.isfinite(maxima[1:])]
     p_value = float((1 + np.sum(drawn >= stated)) / (1 + drawn.size)) if np.isfinite(stated) else math.nan
-    unit = exchanged_unit(of_state[rows], blocks[rows], specimen[rows])
     return StateChance(exceeded_by_chance(drawn), p_value, unit)
+
+
+def permuted_maxima(
+    measured: MeasuredSet, asked: Sequence[Entry], state: str, seed: int, turns: int
+) -> tuple[np.ndarray, str]:
+    """Return the largest AUC over attackers of a state as it is, then permuted, (turns + 1,), and within what.
+
+    That is empty where none could be asked.
+    """
+    specimen, of_state = measured.labels["specimen_id"], _of_state(measured, state)
+    able = [attacker for attacker in asked if judged_rows(attacker, measured.healthy, of_state, specimen).size]
+    if not able:
+        return np.empty(0), ""
+    rows = np.flatnonzero(measured.healthy | of_state)
+    given = of_state[rows], exchange_blocks(measured)[rows], specimen[rows]
+    ways = np.concatenate([of_state[None, rows], permuted(*given, seed, turns)])
+    folds = DESIGN.dealt(specimen, seed)[:, rows]
+    return bank_maxima(able, rows, ways, specimen[rows], folds), exchanged_unit(*given)
 
 
 def exceeded_by_chance(maxima: np.ndarray) -> float:
@@ -282,3 +300,109 @@ def exceeded_by_chance(maxima: np.ndarray) -> float:
         return 1.0
     place = math.ceil(LEVEL * (maxima.size + 1) - 1e-9)
     return float(np.sort(maxima)[min(place, maxima.size) - 1])
+
+
+TRAP = "sham_told_from_healthy"
+
+
+@dataclass(frozen=True, slots=True)
+class ShamFound:
+    """The strongest attacker on one sham, and what chance reaches.
+
+    Attributes
+    ----------
+    state, side, attacker : str
+        `side` says what the attackers see.
+    auc : Interval
+        Against the other healthy records, on gearboxes that were not learnt from.
+    chance : StateChance, optional
+        Of all attackers that can be permuted.
+    reached : dict of str to float
+        AUC of every attacker.
+    """
+
+    state: str
+    side: str
+    attacker: str
+    auc: Interval
+    chance: StateChance | None
+    reached: dict[str, float]
+
+    @property
+    def told(self) -> bool:
+        """Whether attackers reach more than chance does in 5 % of the cases."""
+        return self.chance is not None and self.chance.p_value <= 0.05
+
+    def numbers(self) -> dict[str, Any]:
+        """Return everything for JSON."""
+        return {
+            "state": self.state,
+            "side": self.side,
+            "attacker": self.attacker,
+            "auc": self.auc.numbers(),
+            "chance": asdict(self.chance) if self.chance else None,
+            "told": self.told,
+            "auc_by_attacker": self.reached,
+        }
+
+
+def shams_found(measured: MeasuredSet, sides: Mapping[str, Sequence[Entry]], seed: int) -> tuple[ShamFound, ...]:
+    """Return what attackers reach on every sham of a set, by what they see.
+
+    None for a set without a sham, with too few gearboxes, or without a healthy record that a sham can stand beside.
+    """
+    labels = measured.labels
+    if SHAM not in labels:
+        return ()
+    sham = labels[SHAM].astype(bool)
+    # As the bank judges damage: a sham's records are no healthy ones while it is asked for.
+    asked = replace(measured, labels={**labels, "fault": np.where(sham, SHAM, labels["fault"])})
+    states = dict.fromkeys(labels["state"][sham].tolist())
+    found = (_sham_found(asked, side, bank, state, seed) for state in states for side, bank in sides.items())
+    return tuple(one for one in found if one is not None)
+
+
+def _sham_found(asked: MeasuredSet, side: str, attackers: Sequence[Entry], state: str, seed: int) -> ShamFound | None:
+    every = [(detection_by(asked, one, state, seed).auc, one.name) for one in attackers]
+    defined = [(auc, name) for auc, name in every if math.isfinite(auc.value)]
+    if not defined:
+        return None
+    auc, name = max(defined, key=lambda entry: entry[0].value)
+    chance = state_chance(asked, [one for one in attackers if one.many], state, seed)
+    return ShamFound(state, side, name, auc, chance, {name: auc.value for auc, name in defined})
+
+
+def sham_traps(found: Sequence[ShamFound]) -> list[Finding]:
+    """Return a finding for every sham that attackers tell better than in any of the permutations.
+
+    That happens to one of 500 sets without a leak, by each side.
+    """
+    return [
+        Finding(
+            TRAP,
+            f"{one.attacker} tells {one.state}, damage without any effect, from healthy records with an AUC of "
+            f"{one.auc.value:.2f} ({one.auc.low:.2f} to {one.auc.high:.2f})",
+            f"in none of {PERMUTATIONS} permutations the strongest attacker reaches as much",
+            "Find what differs between records of damaged states and healthy ones besides the teeth: what was drawn, "
+            "in which order, by which program.",
+        )
+        for one in found
+        if one.chance is not None and one.chance.p_value * (1 + PERMUTATIONS) < 1.5
+    ]
+
+
+def sham_sentences(found: Sequence[ShamFound]) -> list[str]:
+    """Say of every sham how well it is told from healthy records, and what that means."""
+    return [
+        f"{one.state} is a sham: its damage was drawn and passed on with nothing removed. The strongest attacker "
+        f"{one.side}, {one.attacker}, tells it from {HEALTHY} with an AUC of {decimal(one.auc.value)} "
+        f"({limits(one.auc)}); {_chance_text(one)}"
+        for one in found
+    ]
+
+
+def _chance_text(one: ShamFound) -> str:
+    if one.chance is None or not math.isfinite(one.chance.auc):
+        return "what chance reaches is not known."
+    said = f"chance reaches {decimal(one.chance.auc)} in 5 % of the cases."
+    return f"{said} More than chance: damage counts as found only above this AUC." if one.told else said

@@ -1,0 +1,520 @@
+"""Numbers of raw records as a stranger would take them, by layer.
+
+Layers hold only what damage cannot move, since they accuse alone. Levels rise with damage: rms, peak and power in eight
+equal bands to the last bin below half the rate. They accuse where they tell a sham, or small damage as well as large.
+
+* Edges: the rank of the first and last block among all blocks of the record, in level, mean and slope. Records start at
+  a random angle, so every block has the same law, whatever the damage: the rank is uniform.
+* Offsets: mean of an acceleration, and rise of a straight line through it. Nothing that vibrates in place has one.
+* Lines that come from no gear, at one frequency in all records, beside the orders of the shafts. A line is a bin over
+  the median of the bins around it. Bins near an order of a shaft do not count where orders stand out. Of the others
+  those count that stand highest, or vary most, over all records of the set.
+* Ends: level below 8 Hz, where no shaft turns, and in the last thirty-second below half the rate, where converters have
+  filtered lines away; and what channels share there: the mean product of their spectra, over blocks of bins, each
+  divided by its own level. Two channels with a noise of their own share nothing.
+* Clock: a gear turns with its shaft. So the phase of a mesh line, beside the angle that the pulses give, stays where it
+  is over a record, whatever damage there is: a drift is one of clocks.
+* Samples as they are stored: neighbours that are equal, beside those that differ by one to three steps of the
+  converter, of which small differences are equally frequent, however strong a signal is; samples as large as the
+  largest, whose end does not count where several records reach it; ranks of the first and the last difference; runs
+  around large samples ("marks"), by which two records that share them bit by bit are found, wherever they stand.
+* Templates: what is alike in records at the same time after their first sample. On the average over records a machine
+  adds nothing to a sample, however damaged. A spectrum is divided by its own floor, since strong lines would hide what
+  is alike, and cut where lines stand out. Four parts of it, of two octaves each but the lowest, are products of their
+  own: one tone is lost among all lines. The course of the level is the power of 64 parts of the record in decibels,
+  less their mean.
+
+Source: derived.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from functools import partial
+from itertools import combinations, pairwise
+
+import numpy as np
+
+from diagnostics.judging.evaluation import Entry
+from diagnostics.judging.learners import GroupRidge
+from diagnostics.records.channel_quantities import RECORDED
+from diagnostics.records.recording import Recording
+
+EDGE_SAMPLES, EDGE_PARTS = (16, 64), 16
+"""Blocks of so many samples, and one part of so many of the record."""
+
+SHAPED_SAMPLES = 64
+"""Block whose mean and slope count too."""
+
+TINY = 1e-30
+
+
+def edge_ranks(signal: np.ndarray) -> dict[str, float]:
+    """Return the shares of blocks that lie below the first and the last one, 0 to 1, by name; none of short records.
+
+    Parameters
+    ----------
+    signal : (n,) float64
+    """
+    found = {}
+    for edge, turned in (("first", signal), ("last", signal[::-1])):
+        for size in (*EDGE_SAMPLES, signal.size // EDGE_PARTS):
+            if size < EDGE_SAMPLES[0] or signal.size < EDGE_PARTS * size:
+                continue
+            blocks = turned[: signal.size // size * size].reshape(-1, size)
+            found[f"level, {edge} {size} samples"] = rank_of_first(np.square(blocks).mean(axis=1))
+            if size == SHAPED_SAMPLES:
+                found[f"mean, {edge} {size} samples"] = rank_of_first(blocks.mean(axis=1))
+                half = np.square(blocks).reshape(len(blocks), 2, -1).mean(axis=2)
+                found[f"slope of the level, {edge} {size} samples"] = rank_of_first(
+                    np.log((half[:, 1] + TINY) / (half[:, 0] + TINY))
+                )
+    return found
+
+
+def offsets(signal: np.ndarray) -> dict[str, float]:
+    """Return the mean of samples (n,) float64, and by how much a straight line rises over the record."""
+    course = np.linspace(-0.5, 0.5, signal.size) if signal.size > 1 else np.zeros(signal.size)
+    return {"mean": float(signal.mean()), "rise": 12.0 * float(np.mean(signal * course))}
+
+
+def rank_of_first(values: np.ndarray) -> float:
+    """Return the share of the others that lie below the first, ties counted half."""
+    return float(np.mean(0.5 + 0.5 * np.sign(values[0] - values[1:])))
+
+
+LINE_AROUND, POOLED, KEPT_LINES = 80, 8, 12
+"""Bins whose median a bin is divided by, bins of which the highest is kept, and frequencies that are columns, twice."""
+
+LOW_AROUND = 16
+"""In place of `LINE_AROUND` where the floor falls with frequency: below the 80th bin. Of the first 16 none counts."""
+
+NEAR_ORDER_BINS, REGION, STANDING = 2, 640, 1.5
+"""Orders hide lines only in regions of so many bins where the median beside them is 1.5 times that of the others."""
+
+
+def shaft_rates_hz(record: Recording) -> tuple[float, ...]:
+    """Return the mean speeds of the first two shafts [Hz] by the pulses; none with fewer than two pulses."""
+    pulses = np.asarray(record.tacho_s, dtype=np.float64)
+    if pulses.size < 2 or not pulses[-1] > pulses[0]:
+        return ()
+    first, (driver, driven) = float((pulses.size - 1) / (pulses[-1] - pulses[0])), record.teeth
+    return first, first * driver / driven
+
+
+def line_contrast(signal: np.ndarray, fs_hz: float, rates_hz: tuple[float, ...]) -> np.ndarray:
+    """Return how far lines stand over the median of the bins around them, (bins / 8,) float32 [dB].
+
+    Parameters
+    ----------
+    signal : (n,) float64
+    fs_hz : float
+        Sampling frequency [Hz].
+    rates_hz : tuple of float
+        Speeds of the shafts [Hz], near whose multiples nothing counts where these stand out: 0 dB there.
+    """
+    from scipy import fft
+
+    power = np.square(np.abs(fft.rfft((signal - signal.mean()) * np.hanning(signal.size))))[:-1]
+    whole = power.size // LINE_AROUND * LINE_AROUND
+    if not whole:
+        return np.empty(0, np.float32)
+    low, blocks = power[:LINE_AROUND].reshape(-1, LOW_AROUND), power[:whole].reshape(-1, LINE_AROUND)
+    # the last bins belong to the block before them
+    floor = np.append(
+        np.repeat(np.median(blocks, axis=1), LINE_AROUND), np.full(power.size - whole, np.median(blocks[-1]))
+    )
+    floor[:LINE_AROUND] = np.repeat(np.median(low, axis=1), LOW_AROUND)
+    decibels = 10.0 * np.log10((power + TINY) / (floor + TINY))
+    decibels[:LOW_AROUND] = 0.0
+    for rate_hz in rates_hz:
+        decibels[near_orders(power / (floor + TINY), rate_hz * signal.size / fs_hz)] = 0.0
+    padded = np.append(decibels, np.zeros(-power.size % POOLED))
+    return np.asarray(padded.reshape(-1, POOLED).max(axis=1), dtype=np.float32)
+
+
+def near_orders(ratio: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the bins near multiples of a spacing, where such bins stand above the others of their region.
+
+    Parameters
+    ----------
+    ratio : (k,) float64
+        Power over its median around.
+    spacing : float
+        Bins between two orders.
+    """
+    bins = np.arange(ratio.size)
+    apart = np.abs(bins - spacing * np.round(bins / spacing))
+    found = apart <= NEAR_ORDER_BINS
+    for start in range(0, ratio.size, REGION):
+        part = slice(start, start + REGION)
+        on, off = (ratio[part][side[part]] for side in (apart <= 1.0, ~found))
+        if on.size and off.size and np.median(on) <= STANDING * np.median(off):
+            found[part] = False
+    return found
+
+
+def line_columns(rows: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
+    """Return the contrast at the frequencies that stand highest on the average, or vary most, by channel.
+
+    Parameters
+    ----------
+    rows : list of dict of str to (k,) float32
+        By record and channel, as of `line_contrast`; records of another length are left undefined.
+    """
+    found = {}
+    for channel, first in rows[0].items():
+        every = np.full((len(rows), first.size), np.nan, dtype=np.float32)
+        for place, row in enumerate(rows):
+            if row[channel].size == first.size:
+                every[place] = row[channel]
+        known = every[np.isfinite(every).all(axis=1)]
+        chosen = [np.argsort(-rank, kind="stable")[:KEPT_LINES] for rank in (known.mean(axis=0), known.std(axis=0))]
+        for k in dict.fromkeys(np.concatenate(chosen).tolist()):
+            share = (k + 0.5) / first.size / 2.0
+            found[f"line of {channel} at {share:.4f} of the rate"] = every[:, k].astype(np.float64)
+    return found
+
+
+LOW_HZ, HIGH_PARTS = 8.0, 32
+SHARED_PARTS = (8, 16, 32)
+"""Parts of the band at whose last ones channels are compared."""
+
+BLOCK, FEWEST_BINS = 50, 4
+
+
+def quiet_ends(channels: dict[str, np.ndarray], fs_hz: float) -> dict[str, float]:
+    """Return levels [dB] and what channels share, -1 to 1, by name; undefined where a record is too short.
+
+    Parameters
+    ----------
+    channels : dict of str to (n,) float64
+    fs_hz : float
+        Sampling frequency [Hz].
+    """
+    from scipy import fft
+
+    spectra = {name: fft.rfft((x - x.mean()) * np.hanning(x.size))[1:-1] for name, x in channels.items()}
+    found = {}
+    for name, lines in spectra.items():
+        low = lines[: int(LOW_HZ * channels[name].size / fs_hz)]
+        found[f"level below {LOW_HZ:g} Hz of {name}"] = _mean_level(low)
+        found[f"level of the highest bins of {name}"] = _mean_level(lines[-(lines.size // HIGH_PARTS) :])
+    for first, second in combinations(spectra, 2):
+        for parts in SHARED_PARTS if spectra[first].size == spectra[second].size else ():
+            kept = slice(-(spectra[first].size // parts), None)
+            name = f"last 1/{parts} of the band that {first} and {second} share"
+            found[name] = _shared(spectra[first][kept], spectra[second][kept])
+    return found
+
+
+def _mean_level(lines: np.ndarray) -> float:
+    """Return the mean level of lines in dB, by logarithms, so that no line rules it."""
+    if lines.size < FEWEST_BINS:
+        return math.nan
+    return float(np.mean(10.0 * np.log10(np.square(np.abs(lines)) / lines.size + TINY)))
+
+
+def _shared(first: np.ndarray, second: np.ndarray) -> float:
+    blocks = first.size // BLOCK
+    if not blocks:
+        return math.nan
+    own, other = (lines[-blocks * BLOCK :].reshape(blocks, BLOCK) for lines in (first, second))
+    product = (own * other.conj()).real.mean(axis=1)
+    size = np.sqrt(np.square(np.abs(own)).mean(axis=1) * np.square(np.abs(other)).mean(axis=1))
+    return float(np.mean(product / (size + TINY)))
+
+
+SEGMENTS, HARMONICS = 8, 3
+FEWEST_PULSES = 2 * SEGMENTS
+
+
+def clock_drift(signal: np.ndarray, fs_hz: float, pulses_s: np.ndarray, teeth: int) -> float:
+    """Return by what share of its speed the mesh runs ahead of the pulses; NaN with too few of these.
+
+    Parameters
+    ----------
+    signal : (n,) float64
+    fs_hz : float
+        Sampling frequency [Hz].
+    pulses_s : (k,) float64
+        One per turn [s].
+    teeth : int
+    """
+    if pulses_s.size < FEWEST_PULSES:
+        return math.nan
+    first, last = (int(pulses_s[k] * fs_hz) + 1 for k in (0, -1))
+    length = (min(last, signal.size) - first) // SEGMENTS
+    if first < 0 or length < 1:
+        return math.nan
+    kept = slice(first, first + length * SEGMENTS)
+    turns = np.interp(np.arange(kept.start, kept.stop) / fs_hz, pulses_s, np.arange(pulses_s.size))
+    once, lines = np.exp(-2j * np.pi * teeth * turns), []
+    for harmonic in range(1, HARMONICS + 1):
+        lines.append((signal[kept] * once**harmonic).reshape(SEGMENTS, length).sum(axis=1))
+    across = np.array([np.sum(line[1:] * line[:-1].conj()) for line in lines])
+    ahead = np.angle(across) / (2.0 * np.pi * teeth * np.arange(1, HARMONICS + 1))
+    weight = np.abs(across) * np.square(np.arange(1, HARMONICS + 1))
+    return float((weight @ ahead) / (weight.sum() + TINY) / ((turns[-1] - turns[0]) / SEGMENTS))
+
+
+def pulse_roughness(pulses_s: np.ndarray) -> float:
+    """Return log10 of the scatter of third differences of pulse times (k,) [s]; a shaft's own speed leaves few."""
+    third = np.diff(np.asarray(pulses_s, dtype=np.float64), 3)
+    return float(np.log10(third.std() + 1e-12)) if third.size > 1 else math.nan
+
+
+MARKED_PARTS, MARK_REACH, FEWEST_VALUES = 32, 8, 12
+"""Runs of 17 samples around the largest of every part; one of fewer values, such as a clipped one, marks nothing."""
+
+NEIGHBOURS = 3
+"""Steps up and down whose frequency the repeats are compared with."""
+
+TOP = "largest sample"
+"""Held by `stored_numbers` for `without_ends`, which takes it out."""
+
+
+def stored_numbers(signal: np.ndarray) -> dict[str, float]:
+    """Return the numbers of one channel (n,) float64 by name; none of fewer than three samples."""
+    if signal.size < 3:
+        return {}
+    size, apart = np.abs(signal), np.abs(np.diff(signal))
+    step = apart[apart > 0.0].min(initial=np.inf)
+    near = 1.5 * step if np.isfinite(step) else 0.0
+    return {
+        "repeats": repeats_beyond_chance(apart),
+        "samples as large as the largest": float(np.sum(size >= size.max() - near)),
+        "first difference": rank_of_first(apart),
+        "last difference": rank_of_first(apart[::-1]),
+        TOP: float(size.max()),
+    }
+
+
+def repeats_beyond_chance(apart: np.ndarray) -> float:
+    """Return by how many standard deviations equal neighbours exceed those a few steps apart.
+
+    Parameters
+    ----------
+    apart : (n,) float64
+        Differences of neighbours, without signs.
+    """
+    above = apart[apart > 0.0]
+    if not above.size:
+        return float(apart.size)
+    steps = np.round(apart / above.min())
+    few = float(np.sum((steps >= 1.0) & (steps <= NEIGHBOURS)))
+    expected = few / (2.0 * NEIGHBOURS)
+    return float((np.sum(apart == 0.0) - expected) / np.sqrt(expected + few / (2.0 * NEIGHBOURS) ** 2 + 1.0))
+
+
+def without_ends(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return columns of all records without the largest samples; where several records share one, it counts once.
+
+    Parameters
+    ----------
+    columns : dict of str to (records,) float64
+        As of `stored_numbers`, "... of channel".
+    """
+    found = {name: values for name, values in columns.items() if not name.startswith(TOP)}
+    for name, tops in columns.items():
+        if name.startswith(TOP):
+            _, place, counts = np.unique(tops, return_inverse=True, return_counts=True)
+            own = f"samples as large as the largest{name.removeprefix(TOP)}"
+            found[own] = np.where(counts[place.ravel()] > 1, 1.0, found[own])
+    return found
+
+
+def sample_marks(signal: np.ndarray) -> set[int]:
+    """Return a number for the run of samples around the largest sample of every part of a record.
+
+    Parameters
+    ----------
+    signal : (n,) float
+        As it is stored; taken as float32.
+    """
+    stored = np.ascontiguousarray(signal, dtype="<f4")
+    size, found = stored.size // MARKED_PARTS, set[int]()
+    if size <= 2 * MARK_REACH:
+        return found
+    tops = stored[: size * MARKED_PARTS].reshape(MARKED_PARTS, size).argmax(axis=1) + size * np.arange(MARKED_PARTS)
+    for top in tops.tolist():
+        run = stored[max(top - MARK_REACH, 0) : top + MARK_REACH + 1]
+        if run.size == 2 * MARK_REACH + 1 and np.unique(run).size >= FEWEST_VALUES:
+            found.add(int.from_bytes(hashlib.blake2b(run.tobytes(), digest_size=8).digest(), "little"))
+    return found
+
+
+TEMPLATES = "templates"
+TEMPLATE_SAMPLES, AROUND = 16384, 32
+LARGEST_CODE, CODES = 4.0, 31.0
+"""Times its floor up to which a line counts, and codes per floor: a byte holds them."""
+
+COURSE_PARTS = 64
+BANDS = (0, 1 / 64, 1 / 16, 1 / 4, 1)
+"""Edges of the parts of a spectrum, in shares of half the rate."""
+
+
+def whitened_codes(signal: np.ndarray) -> np.ndarray:
+    """Return the spectrum of the first samples (n,) over its floor, real and imaginary part, (2, k) int8."""
+    from scipy import fft
+
+    piece = signal[:TEMPLATE_SAMPLES]
+    lines = fft.rfft((piece - piece.mean()) * np.hanning(piece.size))[1:]
+    lines = lines[: lines.size // AROUND * AROUND].reshape(-1, AROUND)
+    floor = np.sqrt(np.median(np.square(np.abs(lines)), axis=1, keepdims=True) / np.log(2.0)) + TINY
+    over = lines / floor
+    over /= np.maximum(np.abs(over) / LARGEST_CODE, 1.0)
+    return np.round(CODES * np.stack([over.real, over.imag])).astype(np.int8).reshape(2, -1)
+
+
+def level_course(signal: np.ndarray) -> np.ndarray:
+    """Return the level of equal parts of a record (n,) less its mean, (64,) float32 [dB]."""
+    size = signal.size // COURSE_PARTS
+    if not size:
+        return np.zeros(COURSE_PARTS, np.float32)
+    power = np.square(signal[: size * COURSE_PARTS] - signal.mean()).reshape(COURSE_PARTS, size).mean(axis=1)
+    decibels = 10.0 * np.log10(power + TINY)
+    return np.asarray(decibels - decibels.mean(), dtype=np.float32)
+
+
+def template_products(codes: list[np.ndarray], courses: list[np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the products of all pairs of records, (records, records), by what they are of.
+
+    Parameters
+    ----------
+    codes : (records) of (2 channels, k) int8
+        Zero is put for records that are shorter than the longest.
+    courses : (records) of (channels * 64,) float32
+    """
+    size, found = max(row.shape[1] for row in codes), {}
+    rows = np.flatnonzero([row.shape[1] == size for row in codes])
+    for low, high in pairwise(round(edge * size) for edge in BANDS):
+        part = np.stack([codes[row][:, low:high].ravel() for row in rows.tolist()]).astype(np.float32) / CODES
+        product = np.zeros((len(codes), len(codes)))
+        product[np.ix_(rows, rows)] = part @ part.T / max(part.shape[1], 1)
+        found[f"spectra, lines {low} to {high}"] = product
+    every = np.stack(courses).astype(np.float64)
+    return {**found, "courses of the level": every @ every.T}
+
+
+def template_attackers(products: dict[str, np.ndarray]) -> list[Entry]:
+    """Return the attackers on products of all pairs of records, (records, records) each, by what they are of."""
+    return [
+        Entry(f"{TEMPLATES} of {what}", partial(GroupRidge, own), np.arange(len(own)), np.diagonal(own) > 0.0, len(own))
+        for what, own in products.items()
+        if own.any()
+    ]
+
+
+EDGES, OFFSETS, LINES, STORED, ENDS, CLOCK = "edges", "offsets", "lines", "samples", "ends", "clock"
+EIGHTHS = 8
+
+
+@dataclass(frozen=True, slots=True)
+class RawColumns:
+    """Numbers of all records of a set.
+
+    Attributes
+    ----------
+    layers : dict of str to dict of str to (records,) float64
+        Columns by layer.
+    levels : dict of str to (records,) float64
+        Columns that damage moves too [dB].
+    marks : list of frozenset of int
+        Runs of samples of every record.
+    fs_hz : float
+        Sampling frequency [Hz].
+    templates : dict of str to (records, records) float64
+        Products of records, of what stands at fixed times, by what it is.
+    """
+
+    layers: dict[str, dict[str, np.ndarray]] = field(default_factory=dict)
+    levels: dict[str, np.ndarray] = field(default_factory=dict)
+    marks: list[frozenset[int]] = field(default_factory=list)
+    fs_hz: float = math.nan
+    templates: dict[str, np.ndarray] = field(default_factory=dict)
+
+    def of(self, rows: np.ndarray) -> RawColumns:
+        """Return the numbers of some records, by their rows (k,) int."""
+        return replace(
+            self,
+            layers={layer: {n: v[rows] for n, v in columns.items()} for layer, columns in self.layers.items()},
+            levels={name: values[rows] for name, values in self.levels.items()},
+            marks=[self.marks[row] for row in rows.tolist()] if self.marks else [],
+            templates={what: product[np.ix_(rows, rows)] for what, product in self.templates.items()},
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _RawRecord:
+    """What one record gives: columns by layer, contrast by channel, levels, marks, and what stands at fixed times."""
+
+    layers: dict[str, dict[str, float]]
+    lines: dict[str, np.ndarray]
+    levels: dict[str, float]
+    marks: frozenset[int]
+    codes: np.ndarray
+    course: np.ndarray
+
+
+def raw_columns(records: Iterable[Recording]) -> RawColumns:
+    """Return the numbers of all records, in their order."""
+    found, fs_hz = [], math.nan
+    for record in records:
+        found.append(_raw_record(record))
+        fs_hz = record.fs_hz
+    if not found:
+        return RawColumns()
+    layers = {layer: _columns([one.layers[layer] for one in found]) for layer in found[0].layers}
+    layers[STORED] = without_ends(layers[STORED])
+    layers[LINES] = line_columns([one.lines for one in found])
+    templates = template_products([one.codes for one in found], [one.course for one in found])
+    return RawColumns(layers, _columns([one.levels for one in found]), [one.marks for one in found], fs_hz, templates)
+
+
+def _raw_record(record: Recording) -> _RawRecord:
+    held = {name: np.asarray(signal, dtype=np.float64) for name, signal in record.channels.items()}
+    rates, teeth = shaft_rates_hz(record), record.teeth[0]
+    accelerations = {name: x for name, x in held.items() if _is_acceleration(record, name)}
+    layers = {
+        EDGES: {f"{what} of {name}": rank for name, x in held.items() for what, rank in edge_ranks(x).items()},
+        OFFSETS: {f"{what} of {name}": v for name, x in accelerations.items() for what, v in offsets(x).items()},
+        STORED: {f"{what} of {name}": v for name, x in held.items() for what, v in stored_numbers(x).items()},
+        ENDS: quiet_ends(held, record.fs_hz),
+        CLOCK: {
+            "roughness of the pulses": pulse_roughness(record.tacho_s),
+            **{f"drift of {name}": clock_drift(x, record.fs_hz, record.tacho_s, teeth) for name, x in held.items()},
+        },
+    }
+    return _RawRecord(
+        layers,
+        {name: line_contrast(x, record.fs_hz, rates) for name, x in held.items()},
+        {f"{what} of {name}": level for name, x in held.items() for what, level in raw_levels(x).items()},
+        frozenset(mark for signal in record.channels.values() for mark in sample_marks(signal)),
+        np.concatenate([whitened_codes(x) for x in held.values()]),
+        np.concatenate([level_course(x) for x in held.values()]),
+    )
+
+
+def _is_acceleration(record: Recording, channel: str) -> bool:
+    return record.quantities.get(channel, RECORDED.word) == RECORDED.word
+
+
+def _columns(rows: list[dict[str, float]]) -> dict[str, np.ndarray]:
+    names = dict.fromkeys(name for row in rows for name in row)
+    return {name: np.array([row.get(name, np.nan) for row in rows]) for name in names}
+
+
+def raw_levels(signal: np.ndarray) -> dict[str, float]:
+    """Return rms, peak and power in equal bands up to half the rate, in dB, of samples (n,) float64."""
+    from scipy import fft
+
+    power = np.square(np.abs(fft.rfft(signal - signal.mean())))[1:-1]
+    found = {"rms": np.square(signal).mean(), "peak": np.square(signal).max()}
+    found |= {
+        f"power in eighth {k + 1} of the band": part.sum() for k, part in enumerate(np.array_split(power, EIGHTHS))
+    }
+    return {name: float(10.0 * np.log10(value + TINY)) for name, value in found.items()}
