@@ -199,7 +199,7 @@ def _set_page(folder: Path, out: Path | None, amount: AmountOptions, of_set: Set
     from diagnostics.explore.set_page import LookOptions, write_set_page
     from diagnostics.indicators.own_indicator import load_indicators
     from diagnostics.prediction.released_model import load_model
-    from diagnostics.report.life_pictures import lives_of
+    from diagnostics.report.life_report import lives_of
     from diagnostics.scoring.truth import is_lives
     from siggen.dataset.reading import open as open_set
 

@@ -118,7 +118,7 @@ def _ranked_tables(
     from diagnostics.records.record_classes import refuse_lives
     from diagnostics.records.state_classes import chosen_states
     from diagnostics.records.usable_records import check_states
-    from diagnostics.report.indicator_evaluation import evaluated, findings, write_evaluation
+    from diagnostics.report.indicators import evaluated, findings, write_evaluation
     from diagnostics.statistics.assessment import AssessmentSettings
     from siggen.dataset.reading import open as open_set
 

@@ -1,14 +1,9 @@
-"""All figures of a report by file name, with their captions; what cannot be drawn becomes a note.
-
-Figures of what the damage does to the mesh: stiffness curves of one specimen, and the loss over all specimens.
-
-Figures of records: waveform per state, and order spectrum around a mesh harmonic with its sidebands marked.
-"""
+"""Figures of a report: examples of records by state, spectra, scores."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,15 +16,130 @@ from diagnostics.page.provenance import without_path
 from diagnostics.page.sideband_marks import PASSING, draw_marks, mark_handles, order_words, sideband_places, turn_words
 from diagnostics.page.style import SLANTED, new_figure, state_colours, state_ticks
 from diagnostics.page.tables import records_line, records_link, state_links
-from diagnostics.records.gear_train import GearMesh
+from diagnostics.records.gear_train import GearMesh, meshes_of
+from diagnostics.records.recording import Recording, one_recording
 from diagnostics.records.state_classes import HEALTHY
-from diagnostics.report import score_figures
-from diagnostics.report.examples import Example, ExampleSet, around_mesh, example_set
-from diagnostics.signal.spectrum import OrderSpectrum, strongest_harmonic
+from diagnostics.report import classifier_tables as score_figures
+from diagnostics.signal.spectrum import OrderSpectrum, order_spectrum, strongest_harmonic
+from diagnostics.training.splits import TEST
 from siggen.dataset.reading import Dataset
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """One state of the chosen specimen."""
+
+    record_id: int
+    state: str
+    fault: str
+    signal: np.ndarray
+    tacho_s: np.ndarray
+    spectrum: OrderSpectrum | None
+
+
+@dataclass(frozen=True, slots=True)
+class ExampleSet:
+    """Examples of all states of one specimen, and what they have in common."""
+
+    examples: tuple[Example, ...]
+    specimen_id: int
+    channel: str
+    quantity: str
+    unit: str
+    speed_hz: float
+    torque_nm: float
+    teeth: tuple[int, int]
+    fs_hz: float
+    train: tuple[GearMesh, ...]
+    mesh: GearMesh
+
+    @property
+    def turns_hz(self) -> float:
+        """How often the driver turns, of a planetary set against its carrier."""
+        planets = self.mesh.planets
+        return self.speed_hz * (1.0 if planets is None else float(planets.sun_turns))
+
+    @property
+    def healthy(self) -> Example | None:
+        """The first healthy example."""
+        return next((example for example in self.examples if example.fault == HEALTHY), None)
+
+
+def example_set(dataset: Dataset, channel: int = 0) -> ExampleSet:
+    """Return the states of the specimen that has most of them, at its first operating point.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        The set.
+    channel : int
+        Position of the channel.
+    """
+    chosen = _example_rows(dataset)
+    found = dataset.channels[channel]
+    records = [one_recording(dataset, row["record_id"]) for row in sorted(chosen, key=lambda row: row["state_id"])]
+    first, train = records[0].labels, meshes_of(records[0].train)
+    return ExampleSet(
+        examples=tuple(_example(record, found.name) for record in records),
+        specimen_id=int(first["specimen_id"]),
+        channel=found.name,
+        quantity=found.quantity,
+        unit=found.shown_unit,
+        speed_hz=float(first["speed_hz"]),
+        torque_nm=float(first["torque_nm"]),
+        teeth=train[0].teeth,
+        fs_hz=dataset.fs_hz,
+        train=train,
+        mesh=train[0],
+    )
+
+
+def around_mesh(examples: ExampleSet, mesh: GearMesh) -> ExampleSet:
+    """Return examples with the teeth, the speed and the orders of a mesh's own driver."""
+    turns = float(mesh.turns)
+    shown = [
+        example
+        if example.spectrum is None
+        else replace(
+            example,
+            spectrum=replace(
+                example.spectrum,
+                order=example.spectrum.order / turns,
+                revolutions=max(1, int(example.spectrum.revolutions * turns)),
+            ),
+        )
+        for example in examples.examples
+    ]
+    return replace(examples, examples=tuple(shown), speed_hz=examples.speed_hz * turns, teeth=mesh.teeth, mesh=mesh)
+
+
+def _example(record: Recording, channel: str) -> Example:
+    signal, tacho_s, teeth = record.channels[channel], record.tacho_s, record.teeth[0]
+    spectrum = order_spectrum(signal, tacho_s, record.fs_hz, teeth) if len(tacho_s) > 1 else None
+    labels = record.labels
+    return Example(int(labels["record_id"]), labels["state"], labels["fault"], signal, tacho_s, spectrum)
+
+
+def _example_rows(dataset: Dataset) -> list[dict[str, Any]]:
+    columns = ["record_id", "specimen_id", "state", "state_id", "operating_point_id", "repeat", "fault"]
+    groups: dict[tuple[int, int], list[dict[str, Any]]] = {}
+    for row in dataset.labels(columns=columns).to_pylist():
+        if row["repeat"] == 0:
+            groups.setdefault((row["operating_point_id"], row["specimen_id"]), []).append(row)
+    _, chosen = max(groups.items(), key=lambda item: (len(item[1]), -item[0][0], -item[0][1]))
+    return chosen
+
+
+def reported_gearboxes(dataset: Dataset) -> list[int]:
+    """Return the gearboxes to which a report leads: those of its figures, then those of the test split."""
+    table = dataset.labels(columns=["specimen_id", "split"]).to_pylist()
+    tested = sorted({int(row["specimen_id"]) for row in table if row["split"] == TEST})
+    # the stiffness curves are of gearbox 0
+    return list(dict.fromkeys([int(_example_rows(dataset)[0]["specimen_id"]), 0, *tested]))
+
 
 DASHES = ("-", "--", "-.", ":")
 """Lines that lie on each other or are printed without colour are told apart by their dashes."""

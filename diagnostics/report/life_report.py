@@ -1,44 +1,366 @@
-"""The report of a set of gearboxes that run to failure: how well baselines tell their remaining life."""
+"""The report of gearboxes that run to failure: remaining life, when damage is first seen, pictures of lives."""
 
 from __future__ import annotations
 
+import base64
+import io
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from diagnostics.audit.life_leaks import Leak, life_leaks
 from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.single_thread import single_thread
 from diagnostics.explore.look import Look
-from diagnostics.explore.set_page import LookOptions, set_look
+from diagnostics.explore.set_page import Lives, LookOptions, set_look
+from diagnostics.indicators.table import RecordTable
 from diagnostics.page import html
 from diagnostics.page.html import Cell
 from diagnostics.page.provenance import origin_sentence, provenance
+from diagnostics.page.style import WIDTH_IN, png_bytes, styled
 from diagnostics.page.wording import capitalised, counted
-from diagnostics.report.life_detection import detection_table, life_block, shown_gearboxes
-from diagnostics.report.life_pictures import lives_of
-from diagnostics.report.unit_lives import PICTURES, FailureDetection, detections, unit_lives, watches
 from diagnostics.scoring.prediction_file import CLASSIFIER, RECORD, SPLIT, write_predictions
 from diagnostics.scoring.remaining_life import COLUMNS
 from diagnostics.statistics.evaluation import Interval
+from diagnostics.statistics.first_detection import IN_A_ROW, QUIET, Watch, rise, watched
 from diagnostics.statistics.life_scores import BINS, QUANTILES, LifeScores, life_scores
 from diagnostics.training.life_baselines import (
     AGE,
     AREAS,
     CONSTANT,
     FOLDS,
+    HISTORY,
     OUTLOOK,
     Inspections,
     baseline_predictions,
+    history_predictions,
 )
-from diagnostics.training.life_rows import INDICATORS, inspections
+from diagnostics.training.life_rows import INDICATORS, inspections, inspections_of
 from siggen.dataset.reading import Dataset
-from siggen.errors import how_to_install
+from siggen.errors import DatasetError, how_to_install
 from siggen.file_writing import write_file
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MOST_SHOWN = 5
+HEIGHT_IN = 4.6
+COLOURS = ("#1f6f8b", "#b01e3c", "#e3a21a", "#6a1b6e")
+TRUTH_COLOUR, BAND_COLOUR, MARK_COLOUR = "#1c2733", "#8a97a3", "#5b6b7b"
+LOWEST = 0.1
+"""Of an index over its limit that is drawn; below it nothing is told apart."""
+
+
+@dataclass(frozen=True, slots=True)
+class FlankPicture:
+    """The flank of the tooth that fails, as a camera saw it."""
+
+    age_h: float
+    share: float
+    png: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class UnitLife:
+    """One gearbox at its inspections.
+
+    Attributes
+    ----------
+    specimen : int
+    age_h : (n,) float64
+    watches : mapping of str to ((n,) float64, float)
+        What shows damage: its index over its limit, and the age at which it is detected; NaN where it is not.
+    marks_h : mapping of str to float
+        Ages of its ends.
+    pictures : sequence of FlankPicture
+    end_h : float
+        At which it fails, or would have.
+    predicted_h : mapping of str to (n, 3) float64
+        Quantiles of the remaining life, by what is known.
+    """
+
+    specimen: int
+    age_h: np.ndarray
+    watches: Mapping[str, tuple[np.ndarray, float]]
+    marks_h: Mapping[str, float]
+    pictures: Sequence[FlankPicture]
+    end_h: float
+    predicted_h: Mapping[str, np.ndarray]
+
+
+def life_figure(unit: UnitLife) -> Figure:
+    """Return the figure: pictures above, indices over age, remaining life over age."""
+    from matplotlib.figure import Figure
+
+    with styled():
+        figure = Figure(figsize=(WIDTH_IN, HEIGHT_IN), layout="constrained")
+        grid = figure.add_gridspec(3, MOST_SHOWN, height_ratios=[0.75, 1.2, 1.2])
+        _draw_pictures(figure, grid, unit)
+        indices = figure.add_subplot(grid[1, :])
+        remaining = figure.add_subplot(grid[2, :], sharex=indices)
+        _draw_indices(indices, unit)
+        _draw_remaining(remaining, unit)
+    return figure
+
+
+def _draw_pictures(figure: Figure, grid: Any, unit: UnitLife) -> None:
+    from matplotlib.image import imread
+
+    count = len(unit.pictures)
+    chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_SHOWN)).round().astype(int)).tolist()
+    for place, number in enumerate(chosen):
+        one, axis = unit.pictures[number], figure.add_subplot(grid[0, place])
+        axis.imshow(imread(io.BytesIO(one.png), format="png"), cmap="gray", vmin=0.0, vmax=1.0)
+        axis.set_title(f"{one.age_h:.0f} h, {100.0 * one.share:.1f} %", fontsize=8)
+        axis.set_xticks([])
+        axis.set_yticks([])
+        axis.grid(visible=False)
+
+
+def _draw_indices(axis: Any, unit: UnitLife) -> None:
+    axis.axhline(1.0, color=MARK_COLOUR, linestyle=":", linewidth=1.0)
+    for colour, (name, (index, detected_h)) in zip(COLOURS, unit.watches.items(), strict=False):
+        axis.plot(unit.age_h, np.maximum(index, LOWEST), color=colour, marker="o", markersize=3, label=name)
+        if np.isfinite(detected_h):
+            at = float(np.maximum(index[unit.age_h == detected_h], LOWEST)[0])
+            axis.plot(detected_h, at, color=colour, marker="D", markersize=8, fillstyle="none", linestyle="none")
+    axis.set_yscale("log")
+    axis.set_ylabel("Index / limit [-]")
+    axis.tick_params(labelbottom=False)
+    axis.legend(loc="upper left", fontsize=7)
+    _draw_marks(axis, unit, named=True)
+
+
+def _draw_remaining(axis: Any, unit: UnitLife) -> None:
+    for (name, values), colour in zip(unit.predicted_h.items(), (COLOURS[0], BAND_COLOUR), strict=False):
+        low, middle, high = np.maximum(values, 0.0).T
+        axis.fill_between(unit.age_h, low, high, color=colour, alpha=0.2, linewidth=0)
+        axis.plot(unit.age_h, middle, color=colour, marker="o", markersize=3, label=name)
+    axis.plot([0.0, unit.end_h], [unit.end_h, 0.0], color=TRUTH_COLOUR, linestyle="--", label="true")
+    axis.set_ylim(bottom=0.0)
+    axis.set_xlim(left=0.0)
+    axis.set_xlabel("Age [h]")
+    axis.set_ylabel("Remaining life [h]")
+    axis.legend(loc="upper right", fontsize=7)
+    _draw_marks(axis, unit, named=False)
+
+
+def _draw_marks(axis: Any, unit: UnitLife, *, named: bool) -> None:
+    for name, age_h in unit.marks_h.items():
+        axis.axvline(age_h, color=MARK_COLOUR, linewidth=0.8)
+        if named:
+            axis.text(
+                age_h, 1.01, name, transform=axis.get_xaxis_transform(), fontsize=7, ha="center", va="bottom",
+                color=MARK_COLOUR,
+            )  # fmt: skip
+
+
+PICTURES, DEBRIS, FIVE, WITH_HISTORY = "pictures", "oil debris", "five indicators", "NA4 and NB4"
+
+
+def watches(found: Inspections) -> dict[str, Watch]:
+    """Return what shows damage: pictures from their first pit on, the others by their limits."""
+    whole = found.worst_shares[:, 0] == 0.0
+    five = np.concatenate(list(found.indicators.values()), axis=1)
+    of = {
+        DEBRIS: found.debris_mg,
+        FIVE: rise(five, found.specimen, whole),
+        WITH_HISTORY: rise(found.history, found.specimen, whole),
+    }
+    seen = {
+        int(unit): int(np.flatnonzero((found.specimen == unit) & ~whole)[0])
+        for unit in np.unique(found.specimen[~whole])
+    }
+    pictures = Watch(np.where(whole, 0.0, 1.0), seen)
+    return {PICTURES: pictures, **{name: watched(index, found.specimen, whole) for name, index in of.items()}}
+
+
+@dataclass(frozen=True, slots=True)
+class FailureDetection:
+    """What of the failed gearboxes is detected by one thing.
+
+    Attributes
+    ----------
+    gearboxes, detected, early : int
+        That failed; of these detected while a tooth is pitted; with an alarm that counts before any pit.
+    share, left_h : float
+        Medians over the detected ones: area of the worst tooth, and hours until the end; NaN without any.
+    """
+
+    gearboxes: int
+    detected: int
+    early: int
+    share: float
+    left_h: float
+
+    def numbers(self) -> dict[str, float | int | None]:
+        """Return it for JSON."""
+        medians = {"worst_share": self.share, "left_h": self.left_h}
+        counts = {"gearboxes": self.gearboxes, "detected": self.detected, "before_any_pit": self.early}
+        return {**counts, **{name: value if np.isfinite(value) else None for name, value in medians.items()}}
+
+
+def detections(found: Inspections, seen: Mapping[str, Watch]) -> dict[str, FailureDetection]:
+    """Return what each watch detects of the gearboxes that failed."""
+    failed = set(np.unique(found.specimen[np.isfinite(found.rul_h)]).tolist())
+    return {name: _detection(found, one, failed) for name, one in seen.items()}
+
+
+def _detection(found: Inspections, watch: Watch, failed: set[int]) -> FailureDetection:
+    rows = np.array([row for unit, row in watch.detected.items() if unit in failed], dtype=int)
+    pitted = found.worst_shares[rows, 0] > 0.0
+    right = rows[pitted]
+    share, left_h = found.worst_shares[right, 0], found.rul_h[right]
+    medians = (float(np.median(values)) if right.size else float("nan") for values in (share, left_h))
+    return FailureDetection(len(failed), int(right.size), int((~pitted).sum()), *medians)
+
+
+def unit_lives(
+    dataset: Dataset,
+    found: Inspections,
+    seen: Mapping[str, Watch],
+    predicted: Mapping[str, np.ndarray],
+    chosen: Sequence[int],
+) -> dict[int, UnitLife]:
+    """Return some gearboxes for figures; of predictions those that indicators with their history and the truth give."""
+    units = {row["specimen_id"]: row for row in dataset.life("units").to_pylist()}
+    shown = {name: values for name, values in predicted.items() if name in (HISTORY, OUTLOOK)}
+    return {unit: _unit_life(dataset, found, seen, shown, units[unit]) for unit in chosen}
+
+
+def _unit_life(
+    dataset: Dataset,
+    found: Inspections,
+    seen: Mapping[str, Watch],
+    predicted: Mapping[str, np.ndarray],
+    row: Mapping[str, object],
+) -> UnitLife:
+    unit = int(str(row["specimen_id"]))
+    own = np.flatnonzero(found.specimen == unit)
+    at = {name: found.age_h[one.detected[unit]] if unit in one.detected else np.nan for name, one in seen.items()}
+    ends = {"first pit": "first_pit_h", "rated": "rated_h"}
+    marks = {name: float(str(row[column])) for name, column in ends.items()}
+    ended = "failed" if row["event"] == "failed" else "taken out"
+    observed_h = float(str(row["observed_h"]))
+    return UnitLife(
+        specimen=unit,
+        age_h=found.age_h[own],
+        watches={name: (one.index[own], float(at[name])) for name, one in seen.items() if name != PICTURES},
+        marks_h={**{name: age for name, age in marks.items() if age < observed_h}, ended: observed_h},
+        pictures=_pictures(dataset, unit, str(row["end_gear"]), int(str(row["end_tooth"])), found),
+        end_h=float(str(row["failure_h"])),
+        predicted_h={name: values[own] for name, values in predicted.items()},
+    )
+
+
+def _pictures(dataset: Dataset, unit: int, gear: str, tooth: int, found: Inspections) -> list[FlankPicture]:
+    """Return the pictures of one tooth in order of age; that of a whole flank stands for those before its first pit."""
+    table, shares = dataset.life("pictures"), dataset.life("teeth")
+    own = table.filter(pc.equal(table.column("specimen_id"), unit)).to_pylist()
+    of_teeth = shares.filter(pc.equal(shares.column("specimen_id"), unit)).to_pylist()
+    share = {(row["inspection"], row["gear"], row["tooth"]): row["area_share"] for row in of_teeth}
+    ages_h = dict(zip(found.record_id.tolist(), found.age_h.tolist(), strict=True))
+    wanted = [row for row in own if row["gear"] == gear and (row["inspection"] == 0 or row["tooth"] == tooth)]
+    return [
+        FlankPicture(ages_h[row["record_id"]], share.get((row["inspection"], gear, tooth), 0.0), row["png"])
+        for row in sorted(wanted, key=lambda one: one["inspection"])
+        if row["record_id"] in ages_h
+    ]
+
+
+CAPTION = (
+    "Pictures: the flank that ends it, with age and damaged share. Middle: what shows damage, over the limit "
+    f"that {QUIET:.0%} of other gearboxes' inspections without a pit stay below; diamonds: detected. Bottom: predicted "
+    "remaining life with its 80 % interval, beside the true one (dashed)."
+)
+
+
+def shown_gearboxes(found: Inspections) -> list[int]:
+    """Return the gearboxes that failed first, in the middle and last."""
+    known = np.isfinite(found.rul_h)
+    units, first = np.unique(found.specimen[known], return_index=True)
+    order = units[np.argsort((found.age_h + found.rul_h)[known][first], kind="stable")]
+    return list(dict.fromkeys(int(order[place]) for place in (0, order.size // 2, order.size - 1)))
+
+
+def detection_table(detected: Mapping[str, FailureDetection]) -> str:
+    """Return the table of what sees damage, and when."""
+    rows = [
+        [
+            Cell(name),
+            Cell(f"{one.detected} of {one.gearboxes}", value=one.detected),
+            _median(100.0 * one.share),
+            _median(one.left_h),
+            Cell(str(one.early)),
+        ]
+        for name, one in detected.items()
+    ]
+    head = [
+        "What is watched",
+        "Gearboxes detected",
+        "Worst tooth then [%]",
+        "Hours left then [h]",
+        "Detected before any pit",
+    ]
+    caption = (
+        f"First detection in gearboxes that failed, medians. Detected: {IN_A_ROW} inspections in a row above what "
+        f"{QUIET:.0%} of other gearboxes' inspections without a pit stay below; pictures: the first that shows a pit."
+    )
+    return html.table(head, rows, caption=caption)
+
+
+def life_block(unit: UnitLife) -> str:
+    """Return the figure of a gearbox with its caption."""
+    return html.figure_block(png_bytes(life_figure(unit)), f"Gearbox {unit.specimen}. {CAPTION}")
+
+
+def _median(value: float) -> Cell:
+    return Cell(f"{value:.1f}" if np.isfinite(value) else "none", value=value)
+
+
+SEED = 0
+"""Of the folds that the predictions on the page come from; those of a report are its own."""
+LIFE_COLUMNS = (("age_h", "Age [h]"), ("rul_h", "Remaining life [h]"))
+
+
+def lives_of(dataset: Dataset, table: RecordTable) -> Lives:
+    """Return age and remaining life of all records, and what draws a gearbox over its life."""
+    ages = of_records(dataset, dataset.labels(columns=["record_id"]).column("record_id").to_pylist())
+    labels = {name: np.array([row[name] for row in ages], dtype=object) for name, _ in LIFE_COLUMNS}
+    return Lives(labels, LIFE_COLUMNS, figure_of(dataset, table))
+
+
+def of_records(dataset: Dataset, record_ids: Sequence[int]) -> list[dict[str, float | None]]:
+    """Return age and remaining life of records; None where a gearbox was taken out, or a benchmark does not tell."""
+    rows = sorted(dataset.life("inspections").to_pylist(), key=lambda row: row["record_id"])
+    first = np.array([row["record_id"] for row in rows])  # of an inspection's records
+    places = np.searchsorted(first, np.asarray(record_ids), side="right") - 1
+    return [{name: rows[place].get(name) for name, _ in LIFE_COLUMNS} for place in places.tolist()]
+
+
+def figure_of(dataset: Dataset, table: RecordTable) -> Callable[[int], dict[str, str]] | None:
+    """Return what draws a gearbox over its life, with its caption; None where too few failed to learn from."""
+    try:
+        found = inspections_of(dataset, table)
+    except DatasetError:
+        return None
+    predicted = {HISTORY: history_predictions(found, SEED), OUTLOOK: found.outlook_h}
+    seen = watches(found)
+
+    def figure(gearbox: int) -> dict[str, str]:
+        (life,) = unit_lives(dataset, found, seen, predicted, [gearbox]).values()
+        with styled():
+            return {"png": base64.b64encode(png_bytes(life_figure(life))).decode("ascii"), "caption": CAPTION}
+
+    return figure
+
 
 PAGE = "report.html"
 KNOWN = (CONSTANT, AGE, AREAS, OUTLOOK)

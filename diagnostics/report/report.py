@@ -35,13 +35,10 @@ from diagnostics.prediction.saved_models import save_models
 from diagnostics.records.channel_quantities import channel_quantities
 from diagnostics.records.record_classes import set_classes
 from diagnostics.records.state_classes import SHAM, ordered_states
-from diagnostics.report.answer import answer_figure, answer_sentences
+from diagnostics.report.answer import answer_figure, answer_sentences, first_answer, first_caption, first_figure
 from diagnostics.report.audit_words import audit_beside, audit_sentence
-from diagnostics.report.drawing import draw
-from diagnostics.report.examples import example_set, reported_gearboxes
-from diagnostics.report.first_screen import first_answer, first_caption, first_figure
-from diagnostics.report.indicator_evaluation import Evaluated, evaluated, write_evaluation
-from diagnostics.report.indicator_sections import figures
+from diagnostics.report.drawing import draw, example_set, reported_gearboxes
+from diagnostics.report.indicators import Evaluated, evaluated, figures, write_evaluation
 from diagnostics.report.report_page import ANSWER, CAPTION, FIRST, Reported, report_page
 from diagnostics.report.sentences import summary
 from diagnostics.scoring.score import Scores, score

@@ -22,16 +22,17 @@ from diagnostics.page.provenance import origin_sentence, provenance
 from diagnostics.page.tables import records_line, records_link, state_links
 from diagnostics.page.wording import capitalised, counted
 from diagnostics.records.state_classes import CLASS, ordered_states
-from diagnostics.report.answer import answer_sentences
-from diagnostics.report.comparison_tables import score_blocks
-from diagnostics.report.confusion import confusion_table
-from diagnostics.report.detector_table import detection_blocks, detector_table
+from diagnostics.report.answer import answer_sentences, first_answer, first_certainty
+from diagnostics.report.classifier_tables import (
+    confusion_table,
+    detection_blocks,
+    detector_table,
+    nested_blocks,
+    score_blocks,
+    your_scores,
+)
 from diagnostics.report.drawing import Drawing
-from diagnostics.report.first_screen import first_answer, first_certainty
-from diagnostics.report.indicator_evaluation import Evaluated
-from diagnostics.report.indicator_sections import detail_blocks, evaluation_notes, ranking_blocks
-from diagnostics.report.indicator_tables import definition_html
-from diagnostics.report.nested_tables import nested_blocks
+from diagnostics.report.indicators import Evaluated, definition_html, detail_blocks, evaluation_notes, ranking_blocks
 from diagnostics.report.sentences import (
     area_sentence,
     comparison_sentence,
@@ -39,7 +40,6 @@ from diagnostics.report.sentences import (
     scores_sentence,
     trust_sentence,
 )
-from diagnostics.report.your_scores import your_scores
 from diagnostics.scoring.score import Scores
 from diagnostics.statistics.separability import Separability
 from diagnostics.training.realism import is_error_free, meaning_of_scores

@@ -21,7 +21,7 @@ from diagnostics.page.wording import (
     signed_limits,
 )
 from diagnostics.records.record_classes import FAULT, STATE
-from diagnostics.report.indicator_figures import in_a_sentence
+from diagnostics.report.indicators import in_a_sentence
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.separability import Separability, best_by_state
 from diagnostics.training.realism import meaning_of_scores

@@ -31,7 +31,7 @@ from diagnostics.judging.of_split import (
     training_metrics,
 )
 from diagnostics.prediction.saved_models import save_models
-from diagnostics.report.comparison_tables import score_blocks
+from diagnostics.report.classifier_tables import score_blocks
 from diagnostics.training import cnn
 from diagnostics.training.average_rows import averaged_records
 from diagnostics.training.referenced import healthy_references

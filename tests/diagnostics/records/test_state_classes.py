@@ -20,7 +20,7 @@ from diagnostics.judging.sets import OtherSet, check_other_set, set_table
 from diagnostics.loader.window_index import StreamSettings, window_index
 from diagnostics.prediction.model_facts import read_facts
 from diagnostics.prediction.saved_models import save_models
-from diagnostics.report.detector_table import detection_blocks
+from diagnostics.report.classifier_tables import detection_blocks
 from diagnostics.report.sentences import scores_sentence
 from diagnostics.training.feature_classifier import state_index
 

@@ -15,8 +15,7 @@ from diagnostics.judging.alarms import (
     JudgedDetector,
     StateFound,
 )
-from diagnostics.report.answer import LOOKS, answer_figure, answer_sentences
-from diagnostics.report.first_screen import first_answer, first_certainty
+from diagnostics.report.answer import LOOKS, answer_figure, answer_sentences, first_answer, first_certainty
 from diagnostics.statistics.evaluation import Interval
 
 FOUND_MEANS = "Found: the record gives an alarm, as 5 % of healthy records do."
@@ -140,7 +139,7 @@ def test_the_figure_has_a_mark_for_the_chosen_size_and_says_where_sizes_are_too_
 def test_the_first_screen_names_damage_size_detector_and_certainty() -> None:
     found = Detectors({CLASSIFIER: detector(0.8, 4.0), CHOSEN: detector(0.8, 4.0)}, {})
     assert screen(found) == (
-        "**Pitting from 4 mm² on** (2 to beyond the largest) is found in **nine of ten records**. JudgedDetector: "
+        "**Pitting from 4 mm² on** (2 to beyond the largest) is found in **nine of ten records**. Detector: "
         "**logistic regression**."
     )
     sure = first_certainty(found, error_free=False, audit="No trap was found. More.").replace("\xa0", " ")

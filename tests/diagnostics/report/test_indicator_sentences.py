@@ -7,8 +7,7 @@ import math
 import pytest
 
 from diagnostics.records.gear_train import PAIR
-from diagnostics.report.indicator_sentences import best_by_state, indicator_findings
-from diagnostics.report.indicator_tables import undefined_html
+from diagnostics.report.indicators import best_by_state, indicator_findings, undefined_html
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.indicator_result import UNDEFINED, IndicatorResult, StateResult
 

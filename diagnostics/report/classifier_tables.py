@@ -1,0 +1,459 @@
+"""What a report shows of classifiers: damaged or not, what is taken for what, differences, nested folds.
+
+Damaged or not is the table that is asked for first, with what the classes are and what guessing gives. The detectors of
+the answer have AUC, alarms by state, and the size that is found.
+"""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from diagnostics.judging.alarms import Detectors, FoundSize, JudgedDetector
+from diagnostics.judging.judgement import RMS_ALONE, TITLES, Judged
+from diagnostics.judging.nested_folds import KNOWN_ACCEPTED, Nested, Stranger
+from diagnostics.judging.of_split import Referenced, Training
+from diagnostics.page.html import Cell, paragraph, table
+from diagnostics.page.style import new_figure
+from diagnostics.page.tables import interval_cell, linked_cell, records_link
+from diagnostics.page.wording import (
+    capitalised,
+    counted,
+    decimal,
+    joined,
+    percent,
+    percent_limits,
+    rounded,
+    signed,
+    signed_limits,
+)
+from diagnostics.records.record_classes import STATE
+from diagnostics.report.indicators import in_a_sentence
+from diagnostics.scoring.score import Scores
+from diagnostics.statistics.evaluation import Interval
+from diagnostics.statistics.scores import IntervalScores
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def confusion_table(
+    scores: IntervalScores, title: str, records: str = "test records", kind: str = STATE, *, linked: bool = False
+) -> str:
+    """Return the confusion matrix of one classifier.
+
+    Parameters
+    ----------
+    scores : Scores
+    title : str
+        Of the classifier.
+    records : str
+        Which records are counted.
+    kind : str
+        What a class is: `state` or `fault`.
+    linked : bool
+        Whether the page shows the predictions of this classifier, so that a count leads to its records.
+    """
+    classes, counts = scores.classes, scores.confusion
+    share = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
+    rows = [
+        [
+            Cell(true),
+            *(_count(true, classes[k], int(counts[row, k]), share[row, k], linked=linked) for k in range(len(classes))),
+        ]
+        for row, true in enumerate(classes)
+    ]
+    caption = (
+        f"{capitalised(title)}: true {kind} in rows, named {kind} in columns; {records}, and their "
+        f"share of the true {kind}.{' A count leads to its records.' if linked else ''}"
+    )
+    return table([f"True {kind}", *classes], rows, caption=caption)
+
+
+def _count(true: str, named: str, count: int, share: float, *, linked: bool) -> Cell:
+    link = records_link(split="test", **{"class": true}, predicted=named) if count and linked else ""
+    hint = f"records of {true} that are named {named}" if link else ""
+    return Cell(str(count), f"{share:.0%}" if count else "", float(count), link, hint, float(share))
+
+
+ACCURACY_COLOUR, AREA_COLOUR, CHANCE_COLOUR = "#1f6f8b", "#b01e3c", "#8a97a3"
+
+
+def score_figure(training: Training) -> Figure:
+    """Return accuracy and macro-AUROC of every classifier with intervals; dashed lines are chance."""
+    figure, axes = new_figure(1, 2, height_in=0.95 + 0.5 * len(training.judged), sharey=True)
+    chance = training.judged[0].scores.guess
+    panels = (("Accuracy [-]", ACCURACY_COLOUR, chance), ("Macro-AUROC [-]", AREA_COLOUR, 0.5))
+    for axis, (title, colour, level) in zip(axes[0], panels, strict=True):
+        axis.axvline(level, color=CHANCE_COLOUR, linestyle="--", linewidth=1.0)
+        for row, judged in enumerate(training.judged):
+            found = judged.scores.accuracy if axis is axes[0, 0] else judged.scores.macro_auroc
+            axis.plot(
+                [found.low, found.high], [row, row], color=colour, linewidth=2.5, alpha=0.5, solid_capstyle="butt"
+            )
+            axis.plot(found.value, row, marker="o", markersize=6, color=colour)
+        axis.set_xlim(0.0, 1.03)
+        axis.set_xlabel(title)
+    axes[0, 0].set_yticks(range(len(training.judged)), [_name(judged) for judged in training.judged], fontsize=9)
+    axes[0, 0].set_ylim(len(training.judged) - 0.5, -0.5)
+    return figure
+
+
+def _name(judged: Judged) -> str:
+    return "\n".join(textwrap.wrap(TITLES[judged.name], 18))
+
+
+def permutation_figure(training: Training) -> Figure:
+    """Return macro-AUROC after training on permuted labels (dots) beside the true one (diamond)."""
+    shown = [judged for judged in training.judged if judged.permuted_auroc.size]
+    figure, axes = new_figure(height_in=1.2 + 0.55 * len(shown))
+    axis = axes[0, 0]
+    axis.axvline(0.5, color=CHANCE_COLOUR, linestyle="--", linewidth=1.0, label="chance")
+    for row, judged in enumerate(shown):
+        areas = judged.permuted_auroc
+        spread = 0.35 * (np.arange(areas.size) / max(areas.size - 1, 1) - 0.5) if areas.size > 1 else np.zeros(1)
+        label = ("permuted labels", "true labels") if row == 0 else (None, None)
+        axis.plot(areas, row + spread, linestyle="none", marker="o", markersize=4, color=CHANCE_COLOUR, label=label[0])
+        value = judged.scores.macro_auroc.value
+        axis.plot(value, row, linestyle="none", marker="D", markersize=7, color=AREA_COLOUR, label=label[1])
+    axis.set_xlim(0.0, 1.03)
+    axis.set_ylim(len(shown) - 0.5, -0.5)
+    axis.set_yticks(range(len(shown)), [_name(judged) for judged in shown], fontsize=9)
+    axis.set_xlabel("Macro-AUROC on test specimens [-]")
+    figure.legend(loc="outside upper center", ncols=3, fontsize=9)
+    return figure
+
+
+MOST_NAMES = 3
+"""Names shown of what a class that training lacked is called."""
+
+
+def nested_blocks(found: Nested | None, kind: str = STATE) -> list[str]:
+    """Return the blocks; nothing where the set has too few gearboxes for folds."""
+    if found is None:
+        return []
+    area, scores = found.scores.macro_auroc, found.scores
+    sentence = (
+        f"Judged on all {counted(scores.specimens, 'gearbox')} by {found.folds} nested folds, logistic "
+        f"regression on indicators reaches a macro-AUROC of {decimal(area.value)} ({decimal(area.low)} to "
+        f"{decimal(area.high)})."
+    )
+    matrix = confusion_table(scores, "Nested folds over all gearboxes", "records of all gearboxes", kind=kind)
+    return [paragraph(sentence), matrix, *([_strangers(found.strangers)] if found.strangers else [])]
+
+
+def _strangers(found: tuple[Stranger, ...]) -> str:
+    rows = [
+        [
+            Cell(one.name),
+            Cell(str(one.records), value=float(one.records)),
+            Cell(f"{one.rejected:.0%}", value=one.rejected),
+            Cell(joined([f"{name} {share:.0%}" for name, share in list(one.called.items())[:MOST_NAMES]]) or "–"),
+        ]
+        for one in found
+    ]
+    caption = (
+        "Each class left out of training in turn, and its records judged. A record is something else where the largest "
+        f"probability is below what {KNOWN_ACCEPTED:.0%} of known records exceed. The last column has the names most "
+        "often given instead."
+    )
+    return table(["Class that training lacks", "Records", "Called something else", "Called"], rows, caption=caption)
+
+
+def your_scores(scores: Scores | None) -> list[str]:
+    """Return a sentence and the table; nothing without predictions."""
+    if scores is None:
+        return []
+    first = scores.rows[0].name
+    rows = [
+        [
+            Cell(f"{row.task}: {row.measure}"),
+            Cell(row.records),
+            Cell(TITLES.get(row.name, row.name)),
+            interval_cell(row.score),
+            Cell(f"{row.chance:.2f}", value=row.chance),
+            interval_cell(row.difference, sign=True) if row.difference else Cell("\N{EN DASH}"),
+            Cell("less" if row.falls else "more"),
+        ]
+        for row in scores.rows
+    ]
+    head = ["Task", "Records", "Whose", "Score", "Chance", f"{capitalised(first)} minus this", "Better"]
+    text = (
+        f"Your predictions were judged on {counted(scores.records, 'record')} of "
+        f"{counted(scores.gearboxes, 'gearbox')} of the split {scores.split}, beside the classifiers of this "
+        "report. Differences are paired on the same resampled gearboxes, with 95 % limits."
+    )
+    return [
+        paragraph(text),
+        table(head, rows, caption="Scores of the tasks that the predictions answer.", sortable=True),
+    ]
+
+
+CAPTION = (
+    "Detectors that give one alarm for all damage. Indicator and classifiers are judged on all gearboxes, each fold by "
+    "what was chosen or trained on the others; the network on the test gearboxes. Where folds differ in which of them "
+    "is best, a row of its own has the choice that the other gearboxes make. Alarms: share of the records of "
+    "a state above the threshold that 5 % of the healthy records exceed. Last columns: damaged area from which 90 % "
+    "give an alarm. Limits of 95 % come from resampled gearboxes."
+)
+SHAM_CAPTION = " Sham: healthy records whose damage was drawn with nothing removed; an AUC above chance is a leak."
+
+
+def detection_blocks(training: Training) -> list[str]:
+    """Return the tables of detection, on the test specimens and on another set, with what they mean."""
+    blocks = [paragraph(text) for text in (*class_sentences(training), *balance_sentences(training))]
+    shown = tuple(found for found in training.judged if found.detection)
+    if not shown:
+        return blocks
+    blocks += [paragraph(text) for text in gain_sentences(training)]
+    blocks.append(detection_table(shown, f"Damaged or not: {reading(training)}"))
+    other = tuple(found for found in training.other if found.detection)
+    if other:
+        blocks.append(
+            detection_table(
+                other, f"Damaged or not on the other set {training.other_name}. Read it like the table before."
+            )
+        )
+    return blocks
+
+
+def class_sentences(training: Training) -> list[str]:
+    """Say which states are one class; nothing where every state is a class of its own."""
+    merged = {name: states for name, states in training.split.members.items() if len(states) > 1}
+    return [
+        f"The class {name} holds the records of {', '.join(states)}. No damage distinguishes these states, so no "
+        "classifier has to."
+        for name, states in merged.items()
+    ]
+
+
+def balance_sentences(training: Training) -> list[str]:
+    """Give balanced accuracies where classes are unequal; nothing where they are equal."""
+    first = training.judged[0].scores
+    if first.balanced:
+        return []
+    parts = [
+        f"{TITLES[found.name]} {percent(found.scores.balanced_accuracy.value)} "
+        f"({percent_limits(found.scores.balanced_accuracy)})"
+        for found in training.judged
+    ]
+    return [
+        f"The classes have unequal numbers of records. Always naming the most frequent class gives an accuracy of "
+        f"{percent(first.guess)}. The balanced accuracy, a mean over the classes, is: {joined(parts)}. Guessing gives "
+        f"{percent(1 / len(first.classes))} of it."
+    ]
+
+
+def reading(training: Training) -> str:
+    """Say how the table is to be read."""
+    return (
+        f"AUROC of 1 − p({training.split.healthy}) on the test specimens. One alarm covers all kinds of damage. "
+        "Chance is 0.5. The 95 % limits come from resampled specimens."
+    )
+
+
+def gain_sentences(training: Training) -> list[str]:
+    """Say what the best detector gains over the level alone, paired; nothing where there is no interval."""
+    pairs = [(pair, pair.detection) for pair in training.comparisons if pair.second == RMS_ALONE and pair.detection]
+    defined = [(pair, gain) for pair, gain in pairs if math.isfinite(gain.low)]
+    if not defined:
+        return []
+    best, gain = max(defined, key=lambda entry: entry[1].value)
+    return [
+        f"{capitalised(TITLES[best.first])} has the largest gain in detection over RMS alone: {signed(gain.value)} of "
+        f"AUROC ({signed_limits(gain)}, paired over the specimens)."
+    ]
+
+
+def detection_table(found: tuple[Judged, ...], caption: str) -> str:
+    """Return AUROC of healthy against all damaged records, and against every state, by classifier."""
+    states = list(dict.fromkeys(name for judged in found if judged.detection for name in judged.detection.by_class))
+    rows = [
+        [
+            Cell(TITLES[judged.name]),
+            interval_cell(judged.detection.every),
+            *(interval_cell(judged.detection.by_class[state]) for state in states),
+        ]
+        for judged in found
+        if judged.detection
+    ]
+    return table(["Classifier", "all damage", *states], rows, caption=caption, sortable=True)
+
+
+def detector_table(found: Detectors) -> str:
+    """Return all detectors, those beside a healthy record below those without; nothing without any.
+
+    AUC and alarms of a state lead to its records.
+    """
+    every = list({id(one): one for side in (found.alone, found.referenced) for one in side.values()}.values())
+    if not every:
+        return ""
+    states = list(dict.fromkeys(name for detector in every for name in detector.states))
+    kinds = list(dict.fromkeys(state.kind for detector in every for state in detector.states.values()))
+    shams = any(one.sham for one in every)
+    head = [
+        *("Detector", "Gearboxes"),
+        *(["AUC, sham"] if shams else []),
+        "AUC, all damage",
+        *(f"AUC, {name}" for name in states),
+        *(f"Alarms, {name} [%]" for name in states),
+        *(f"Nine of ten, {kind} [mm²]" for kind in kinds),
+    ]
+    rows = [_row(detector, states, kinds, shams=shams) for detector in every]
+    return table(head, rows, caption=CAPTION + (SHAM_CAPTION if shams else ""), sortable=True)
+
+
+def _row(detector: JudgedDetector, states: list[str], kinds: list[str], *, shams: bool) -> list[Cell]:
+    beside = "beside a healthy record" if detector.referenced and "beside" not in detector.title else ""
+    basis = in_a_sentence(detector.basis, detector.gears) if detector.basis else picked(detector.picks)
+    small = ", ".join(part for part in (basis, beside) if part)
+    none = Cell("–", value=math.nan)
+    shown = {"indicator": detector.basis} if detector.basis else {}
+
+    def behind(cell: Cell, state: str) -> Cell:
+        return linked_cell(cell, state=state, **shown)
+
+    return [
+        Cell(detector.title, small),
+        Cell(str(detector.specimens), value=float(detector.specimens)),
+        *([interval_cell(detector.sham) if detector.sham else none] if shams else []),
+        interval_cell(detector.every),
+        *(
+            behind(interval_cell(detector.states[name].auc), name) if name in detector.states else none
+            for name in states
+        ),
+        *(behind(_alarms(detector, name), name) for name in states),
+        *(_size_cell(detector.sizes.get(kind)) for kind in kinds),
+    ]
+
+
+def picked(picks: tuple[tuple[str, int], ...]) -> str:
+    """Return what was chosen for how many groups of gearboxes, the most frequent first; nothing without a choice."""
+    groups = sum(count for _, count in picks)
+    said = [
+        f"{name} for {count}{f' of {groups} groups' if not place else ''}" for place, (name, count) in enumerate(picks)
+    ]
+    return joined(said) if said else ""
+
+
+def _alarms(detector: JudgedDetector, name: str) -> Cell:
+    found = detector.states[name].share if name in detector.states else None
+    if found is None:
+        return Cell("–", value=math.nan)
+    limits = "" if math.isnan(found.low) else f"{100 * found.low:.0f} … {100 * found.high:.0f}"
+    return Cell(f"{100 * found.value:.0f}", limits, 100.0 * found.value)
+
+
+def _size_cell(found: FoundSize | None) -> Cell:
+    if found is None:
+        return Cell("–", value=math.nan)
+    if not found.reached:
+        return Cell("not found", f"up to {rounded(found.largest_mm2)}", 1e9)
+    high = rounded(found.area_mm2.high) if math.isfinite(found.area_mm2.high) else "∞"
+    bound = "≤ " if found.is_bound else ""
+    return Cell(
+        f"{bound}{rounded(found.area_mm2.value)}", f"{rounded(found.area_mm2.low)} … {high}", found.area_mm2.value
+    )
+
+
+UNDEFINED = Interval(math.nan, math.nan, math.nan)
+
+FEWEST_SPECIMENS = 6
+"""Test specimens from which an interval may decide: with five even a sign test cannot fall below 0.05 (2/32)."""
+
+
+def comparison_table(training: Training) -> str:
+    """Return the paired differences of classifiers, and whether the interval of each, by itself, excludes zero."""
+    specimens = training.judged[0].scores.specimens
+    rows = [
+        [
+            Cell(f"{TITLES[pair.first]} − {TITLES[pair.second]}"),
+            interval_cell(pair.macro_auroc, sign=True),
+            interval_cell(pair.accuracy, sign=True),
+            Cell(verdict(pair.macro_auroc, specimens)),
+        ]
+        for pair in training.comparisons
+    ]
+    head = ["Paired difference", "Macro-AUROC", "Accuracy", "Interval excludes 0"]
+    caption = (
+        "Paired differences on the same resampled specimens, with 95 % limits. Where the limits of macro-AUROC include "
+        "0, the set does not show which classifier is better. There is no correction for many pairs: about one pair in "
+        f"twenty excludes 0 even where no pair differs. The last column needs {FEWEST_SPECIMENS} test gearboxes."
+    )
+    return table(head, rows, caption=caption, sortable=True)
+
+
+def verdict(difference: Interval, specimens: int) -> str:
+    """Return whether a paired interval excludes zero; resampling a few specimens makes intervals too narrow to say."""
+    if specimens < FEWEST_SPECIMENS or not math.isfinite(difference.low):
+        return "too few gearboxes"
+    return "yes" if difference.low > 0.0 or difference.high < 0.0 else "no"
+
+
+def other_set_table(training: Training) -> str:
+    """Return the scores on another set beside those on the own test specimens."""
+    own = {found.name: found for found in training.judged}
+    rows = [_other_row(found, own[found.name]) for found in training.other]
+    head = ["Classifier", "Macro-AUROC there", "Macro-AUROC here", "Accuracy there", "Accuracy here"]
+    there = training.other[0].scores
+    caption = (
+        f"Scores on the other set, {training.other_name}: {counted(there.records, 'record')} of "
+        f"{counted(there.specimens, 'specimen')}. No classifier was trained on it."
+    )
+    return table([*head, "Calibration error there"], rows, caption=caption, sortable=True)
+
+
+def referenced_table(found: Referenced) -> str:
+    """Return what classifiers reach alone and beside a healthy record of the same gearbox, on the same records."""
+    rows = [
+        [
+            Cell(TITLES[judged.name]),
+            interval_cell(judged.scores.macro_auroc),
+            interval_cell(judged.scores.accuracy),
+            interval_cell(judged.detection.every if judged.detection else UNDEFINED),
+        ]
+        for judged in found.judged
+    ]
+    caption = (
+        "Alone and beside a healthy record of the same gearbox, on the "
+        f"{counted(found.judged[0].scores.records, 'test record')} that have one, with 95 % limits. "
+        "A healthy record is never its own reference."
+    )
+    head = ["Classifier", "Macro-AUROC [-]", "Accuracy [-]", "Damaged or not, AUROC [-]"]
+    return table(head, rows, caption=caption, sortable=True)
+
+
+def referenced_pairs_table(found: Referenced) -> str:
+    """Return the paired differences that a healthy record makes."""
+    specimens = found.judged[0].scores.specimens
+    rows = [
+        [
+            Cell(f"{TITLES[pair.first]} − {TITLES[pair.second]}"),
+            interval_cell(pair.macro_auroc, sign=True),
+            interval_cell(pair.detection or UNDEFINED, sign=True),
+            Cell(verdict(pair.macro_auroc, specimens)),
+        ]
+        for pair in found.comparisons
+    ]
+    head = ["Paired difference", "Macro-AUROC", "Damaged or not", "Interval excludes 0"]
+    caption = (
+        "What a healthy record of the same gearbox is worth: paired differences on the same resampled specimens, with "
+        "95 % limits. The last column is of macro-AUROC."
+    )
+    return table(head, rows, caption=caption, sortable=True)
+
+
+def _other_row(there: Judged, here: Judged) -> list[Cell]:
+    scores = [there.scores.macro_auroc, here.scores.macro_auroc, there.scores.accuracy, here.scores.accuracy]
+    return [Cell(TITLES[there.name]), *(interval_cell(s) for s in scores), interval_cell(there.calibration.after)]
+
+
+def score_blocks(training: Training) -> list[str]:
+    """Return what the section of scores holds below its first table."""
+    blocks = [comparison_table(training)]
+    if training.referenced:
+        blocks += [referenced_table(training.referenced), referenced_pairs_table(training.referenced)]
+    return [*blocks, other_set_table(training)] if training.other else blocks

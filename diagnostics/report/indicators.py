@@ -1,0 +1,650 @@
+"""What a report shows of single indicators: their evaluation, sentences, tables, figures."""
+
+from __future__ import annotations
+
+import json
+import math
+import textwrap
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from diagnostics.base.progress import Stage, silent_stage
+from diagnostics.indicators.classifier_table import write_table
+from diagnostics.indicators.indicator import OF_CHANNEL
+from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.ranking_table import IndicatorTable
+from diagnostics.indicators.registry import ALL, IndicatorColumn, column_title, indicator_columns
+from diagnostics.indicators.settings import IndicatorSettings
+from diagnostics.page import html
+from diagnostics.page.html import Cell, table
+from diagnostics.page.style import new_figure, state_ticks
+from diagnostics.page.tables import indicator_links, interval_cell, linked_cell, records_line
+from diagnostics.page.wording import counted, limits, percent
+from diagnostics.records.channel_quantities import ShownQuantity
+from diagnostics.records.gear_train import GearNames
+from diagnostics.records.state_classes import HEALTHY, damage_kinds, ordered_states
+from diagnostics.statistics.assessment import SIZES, AssessmentSettings, assessment, result_table
+from diagnostics.statistics.detectable_size import detection_curve
+from diagnostics.statistics.indicator_result import IndicatorResult
+from diagnostics.statistics.judged_records import JudgedRecords, judged_records
+from diagnostics.statistics.multiple_tests import smallest_paired_p
+from diagnostics.training.realism import meaning_of_scores
+from siggen.dataset.reading import Dataset
+from siggen.file_writing import write_file
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+CROWDED = 8
+"""States beyond which their names are small."""
+ROWS_SHOWN = 36
+CURVE_COLOURS = ("#b01e3c", "#1f6f8b", "#e3a21a", "#6a1b6e", "#3c7d3e", "#5b6b7b")
+MARKERS = "osD^vP"
+LEGEND_SIGNS = 66
+
+
+def known_column(column: str, gears: GearNames) -> IndicatorColumn | None:
+    """Return what a column with its channel holds; None of the user's own."""
+    return indicator_columns(IndicatorSettings(), gears).get(column.partition("__")[0])
+
+
+def in_words(column: str, gears: GearNames) -> str:
+    """Return what people call a column with its channel; the user's own indicators keep their names."""
+    return column_title(column.partition("__")[0], gears)
+
+
+def term_cell(column: str, gears: GearNames) -> Cell:
+    """Return the cell that names a column: its title, which leads to the definition, its channel and its own name."""
+    known = known_column(column, gears)
+    channel = column.partition("__")[2]
+    small = f"{channel}; {column.partition('__')[0]}" if channel else column
+    return Cell(in_words(column, gears), small, link=f"#term-{known.entry.name}" if known else "")
+
+
+def in_a_sentence(column: str, gears: GearNames) -> str:
+    """Return a column as a sentence names it: its title in small letters where it is no acronym, and its channel."""
+    title, channel = in_words(column, gears), column.partition("__")[2]
+    if title[1:2].islower():
+        title = title[:1].lower() + title[1:]
+    return f"{title} at {channel}" if channel else title
+
+
+def panel_title(column: str, gears: GearNames, width: int = 38) -> str:
+    """Return title and channel of a column for a figure, in lines of at most so many signs."""
+    title, channel = in_words(column, gears), column.partition("__")[2]
+    return "\n".join(textwrap.wrap(f"{title} ({channel})" if channel else title, width))
+
+
+def separation_rows(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> dict[str, list[float]]:
+    """Return the separations in both designs by indicator, median over channels, best first: `others` then `same`."""
+    names = list(dict.fromkeys(result.indicator for result in found)) if states else []
+    values = {name: _medians(found, name, states) for name in names}
+    shown = sorted(names, key=lambda name: -_mean(values[name][: len(states)]))[:ROWS_SHOWN]
+    return {name: values[name] for name in shown}
+
+
+def _medians(found: Sequence[IndicatorResult], name: str, states: tuple[str, ...]) -> list[float]:
+    """Return the median over channels of the separations, turned so that 1 is perfect."""
+    rows = [result for result in found if result.indicator == name]
+    medians = []
+    for design in ("others", "same"):
+        for state in states:
+            turned = [0.5 + r.direction * (getattr(r, design)[state].separation.value - 0.5) for r in rows]
+            defined = [value for value in turned if math.isfinite(value)]
+            medians.append(float(np.median(defined)) if defined else math.nan)
+    return medians
+
+
+def _mean(values: list[float]) -> float:
+    return float(np.mean(values)) if all(map(math.isfinite, values)) else -math.inf
+
+
+def severity_figure(
+    matrix: FeatureMatrix,
+    shown: Sequence[IndicatorResult],
+    states: tuple[str, ...],
+    healthy: tuple[str, ...],
+    channels: Mapping[str, ShownQuantity],
+) -> Figure:
+    """Return each indicator over the states: median and 5 to 95 % of the records, and every specimen as a thin line.
+
+    `channels` says what channels hold; the unit of each indicator stands at its axis.
+    """
+    rows = (len(shown) + 1) // 2
+    figure, axes = new_figure(rows, 2, height_in=0.8 + 1.6 * rows, sharex=True)
+    ladder = (*healthy, *states)
+    for axis, result in zip(axes.ravel(), shown, strict=False):
+        values = matrix.values[:, matrix.names.index(result.column)]
+        _draw_ladders(axis, matrix.labels, values, ladder)
+        position = [k for k, state in enumerate(ladder) if np.isfinite(values[matrix.labels["state"] == state]).any()]
+        limits = [np.nanquantile(values[matrix.labels["state"] == ladder[k]], [0.05, 0.5, 0.95]) for k in position]
+        low, middle, high = np.array(limits).T
+        axis.fill_between(position, low, high, color="#1f6f8b", alpha=0.18, linewidth=0)
+        axis.plot(position, middle, color="#b01e3c", linewidth=1.8, marker="o", markersize=4)
+        if np.nanmin(values) > 0 and np.nanmax(values) > 30 * np.nanmin(values):
+            axis.set_yscale("log")
+        axis.set_title(panel_title(result.column, result.gears), loc="left", fontsize=7)
+        axis.set_ylabel(f"[{_unit(result, channels)}]", fontsize=7)
+        state_ticks(axis, ladder, fontsize=8 if len(ladder) <= CROWDED else 7)
+    for axis in axes.ravel()[len(shown) :]:
+        axis.set_visible(False)
+    return figure
+
+
+def _unit(result: IndicatorResult, channels: Mapping[str, ShownQuantity]) -> str:
+    """Return the unit of an indicator: that of its channel for levels and amplitudes, - for ratios."""
+    known = known_column(result.column, result.gears)
+    if known is None or not known.entry.unit:
+        return "-"
+    return channels[result.channel].unit if known.entry.unit == OF_CHANNEL else known.entry.unit
+
+
+def _draw_ladders(axis: Any, labels: dict[str, np.ndarray], values: np.ndarray, ladder: tuple[str, ...]) -> None:
+    """Draw the mean of every specimen over the states."""
+    for specimen in np.unique(labels["specimen_id"])[:60]:
+        own = labels["specimen_id"] == specimen
+        means = []
+        for state in ladder:
+            chosen = values[own & (labels["state"] == state)]
+            defined = chosen[np.isfinite(chosen)]
+            means.append(float(defined.mean()) if defined.size else np.nan)
+        axis.plot(range(len(ladder)), means, color="#8a97a3", linewidth=0.5, alpha=0.7)
+
+
+def detection_figure(
+    matrix: FeatureMatrix, records: JudgedRecords, shown: Sequence[IndicatorResult], false_alarms: float
+) -> Figure | None:
+    """Return the share of alarms over the damaged area, between other specimens, with intervals; None without data."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    figure, axes = new_figure(height_in=3.4)
+    axis, drawn = axes[0, 0], 0
+    healthy = matrix.labels["fault"] == HEALTHY
+    for colour, marker, result in zip(CURVE_COLOURS, MARKERS, shown, strict=False):
+        values = result.direction * matrix.values[:, matrix.names.index(result.column)]
+        kept = np.isfinite(values)
+        area = matrix.labels[SIZES["area_mm2"]]
+        curve = detection_curve(values[kept], healthy[kept], area[kept], records.weights[:, kept], false_alarms)
+        if curve is None:
+            continue
+        drawn += 1
+        low, high = np.quantile(curve.share[1:], [0.025, 0.975], axis=0)
+        axis.fill_between(curve.size, low, high, color=colour, alpha=0.12, linewidth=0)
+        axis.plot(
+            curve.size,
+            curve.share[0],
+            color=colour,
+            marker=marker,
+            markersize=4,
+            label=panel_title(result.column, result.gears, LEGEND_SIGNS),
+        )
+    if not drawn:
+        return None
+    for level in (0.5, 0.9):
+        axis.axhline(level, color="#8a97a3", linestyle=":", linewidth=0.9)
+    axis.axhline(false_alarms, color="#8a97a3", linestyle="--", linewidth=0.9)
+    axis.set_xscale("log")
+    axis.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.xaxis.set_major_formatter(FuncFormatter(lambda size, _: f"{size:g}"))
+    axis.xaxis.set_minor_formatter(NullFormatter())
+    axis.set_ylim(0.0, 1.03)
+    axis.set_xlabel("Damaged area [mm²]")
+    axis.set_ylabel("Share of alarms [-]")
+    figure.legend(loc="outside lower center", ncols=1, fontsize=8)
+    return figure
+
+
+SIGNIFICANT = 0.05
+FEWEST_SPECIMENS = 3
+"""Of which a summary speaks: fewer give no test, and an interval of two points."""
+
+WITH_HISTORY = ("na4_", "nb4_")
+
+
+def indicator_findings(found: Sequence[IndicatorResult], states: tuple[str, ...], specimens: int) -> list[str]:
+    """Return four findings: best in each design, hardest and easiest state, what survives, the smallest size found."""
+    if not states:
+        return ["The set has no damaged state, so no separation can be judged. The tables give the indicators."]
+    if specimens < FEWEST_SPECIMENS:
+        whose, those = ("a single specimen", "it") if specimens == 1 else (f"{specimens} specimens", "them")
+        return [
+            f"No best indicator is named, because the set has {whose}. The numbers below describe {those} and say "
+            f"nothing about others. At least {FEWEST_SPECIMENS} specimens are needed."
+        ]
+    return [*_best(found, states), *_by_state(found, states), *_survivors(found, specimens), *_smallest(found)]
+
+
+def single_records(found: Sequence[IndicatorResult]) -> list[IndicatorResult]:
+    """Return the indicators that know nothing but their own record."""
+    return [result for result in found if not result.indicator.startswith(WITH_HISTORY)]
+
+
+def _best(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list[str]:
+    single = [r for r in single_records(found) if math.isfinite(r.score_others.value)]
+    if not single:
+        return ["No indicator can be judged between specimens: values or healthy records are missing."]
+    other = max(single, key=lambda r: r.score_others.value)
+    what = "AUC" if len(states) == 1 else "mean AUC over the states"
+    text = (
+        f"The indicator {in_a_sentence(other.column, other.gears)} separates best between different specimens, with "
+        f"{'an' if len(states) == 1 else 'a'} {what} of {other.score_others.value:.2f} ({limits(other.score_others)}). "
+        "Only indicators of single records are compared here."
+    )
+    paired = [r for r in single if math.isfinite(r.score_same.value)]
+    if not paired:
+        return [text]
+    same = max(paired, key=lambda r: r.score_same.value)
+    who = "It is also" if same is other else f"The indicator {in_a_sentence(same.column, same.gears)} is"
+    return [
+        f"{text} {who} the best on the same specimen before and after damage: it moves in its "
+        f"direction in {percent(same.score_same.value)} of the pairs."
+    ]
+
+
+def best_by_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> dict[str, tuple[float, str]]:
+    """Return by state the best AUC between other specimens, turned by direction, and whose it is."""
+    best = {}
+    for state in states:
+        turned = [
+            (0.5 + r.direction * (r.others[state].separation.value - 0.5), r.column)
+            for r in single_records(found)
+            if math.isfinite(r.others[state].separation.value)
+        ]
+        if turned:
+            best[state] = max(turned)
+    return best
+
+
+def _by_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list[str]:
+    best = best_by_state(found, states)
+    if not best:
+        return []
+    if len(best) == 1:
+        return []  # the sentence before has said it
+    hardest, easiest = (chosen(best, key=lambda state: best[state][0]) for chosen in (min, max))
+    said = {state: in_a_sentence(best[state][1], found[0].gears) for state in (hardest, easiest)}
+    return [
+        f"The state {hardest} is the hardest to find: its best single indicator, {said[hardest]}, "
+        f"reaches an AUC of {best[hardest][0]:.2f}. The state {easiest} is the easiest: "
+        f"{said[easiest]} reaches {best[easiest][0]:.2f}. These values are "
+        f"optimistic, because each is the best of many."
+    ]
+
+
+def _survivors(found: Sequence[IndicatorResult], specimens: int) -> list[str]:
+    others, same = ([r for entry in found for r in getattr(entry, design).values()] for design in ("others", "same"))
+    tested = [sum(math.isfinite(r.p_value) for r in results) for results in (others, same)]
+    if not any(tested):
+        return ["No difference could be tested: a test needs three specimens with healthy and damaged records."]
+    kept = [sum(r.holm < SIGNIFICANT for r in results) for results in (others, same)]
+    mild = sum(r.false_discovery < SIGNIFICANT for r in same)
+    text = (
+        f"After Holm's correction at {SIGNIFICANT:g}, {kept[0]} of {counted(tested[0], 'comparison')} between "
+        f"different specimens {_is(kept[0])} significant, and {kept[1]} of {tested[1]} on the same specimen. A "
+        f"comparison is one indicator, channel and state. On the same specimen, {mild} {_is(mild)} below a false "
+        "discovery rate of 5\N{NO-BREAK SPACE}%."
+    )
+    if smallest_paired_p(specimens) * tested[1] <= SIGNIFICANT:
+        return [text]
+    needed = math.ceil(1.0 + math.log2(tested[1] / SIGNIFICANT))
+    least = f"{smallest_paired_p(specimens):.2g}"
+    return [
+        f"{text} With {counted(specimens, 'specimen')} the paired test cannot give less than p = {least}. "
+        f"At least {needed} specimens are needed before any of {counted(tested[1], 'comparison')} can pass Holm's "
+        "correction."
+    ]
+
+
+def _is(number: int) -> str:
+    return "is" if number == 1 else "are"
+
+
+def _smallest(found: Sequence[IndicatorResult]) -> list[str]:
+    name = "others_area_mm2_a90"
+    judged = [r for r in single_records(found) if name in r.detectable and not math.isnan(r.detectable[name].value)]
+    reached = [r for r in judged if math.isfinite(r.detectable[name].value)]
+    if not judged:
+        return ["The smallest damage that is found is not known: there are too few healthy or damaged records."]
+    if not reached:
+        return [
+            "No single indicator finds 90\N{NO-BREAK SPACE}% of the damage of any size. This is between different "
+            "specimens, at the chosen rate of false alarms."
+        ]
+    best = min(reached, key=lambda r: (r.detectable[name].value, -r.score_others.value))
+    size = best.detectable[name]
+    at_most = "at most " if size.value <= best.smallest_size["others_area_mm2"] * (1 + 1e-9) else ""
+    return [
+        f"The indicator {in_a_sentence(best.column, best.gears)} finds the smallest damaged area: "
+        f"{at_most}{size.value:.3g}\N{NO-BREAK SPACE}mm² ({size_text(size.low)} to {size_text(size.high)}) "
+        f"with 90\N{NO-BREAK SPACE}% probability."
+    ]
+
+
+def size_text(size: float) -> str:
+    """Return a size, or the sign for one that is not reached."""
+    return f"{size:.3g}" if math.isfinite(size) else "∞"
+
+
+ARROWS = {1: "rises", -1: "falls"}
+BEHIND = " A number leads to the records behind it."
+OF_HISTORY = ("na4", "nb4")
+"""Indicators with a history are of several records: none stands in the list of records."""
+
+
+def _behind(cell: Cell, column: str, **chosen: object) -> Cell:
+    """Return a cell that leads to the records that it is about."""
+    return cell if column.startswith(OF_HISTORY) else linked_cell(cell, indicator=column, **chosen)
+
+
+def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
+    """Return all indicators, best between other specimens first, with the AUC of every state."""
+    head = ["Indicator, channel", "Rank", "Score", *(f"AUC, {state}" for state in states), "With damage"]
+    rows = [
+        [
+            term_cell(r.column, r.gears), Cell(str(rank), value=rank), interval_cell(r.score_others),
+            *(
+                _behind(interval_cell(r.others[state].separation), r.column, state=state)
+                for state in states
+            ),
+            Cell(ARROWS[r.direction]),
+        ]
+        for rank, r in enumerate(found, start=1)
+    ]  # fmt: skip
+    caption = "Ranking between different specimens: AUC against healthy with 95 % limits. The score is their mean."
+    return table(head, rows, caption=caption + BEHIND, sortable=True, tall=True)
+
+
+def separation_html(rows: Mapping[str, Sequence[float]], states: tuple[str, ...], gears: GearNames) -> str:
+    """Return the heat map: separation of every state in both designs, best first, empty without rows."""
+    head = ["Indicator", *(f"{state}, {design}" for design in ("others", "same") for state in states)]
+    cells = [
+        [
+            term_cell(name, gears),
+            *(_behind(_separation(value), name, state=state) for value, state in zip(values, 2 * states, strict=True)),
+        ]
+        for name, values in rows.items()
+    ]
+    caption = (
+        f"Separation of each state from healthy by the best {len(cells)} indicators, median over channels. 1 (dark) is "
+        "perfect, 0.5 (white) is chance. Others: AUC between specimens. Same: share of pairs of one specimen that move "
+        f"in the direction of the indicator.{BEHIND}"
+    )
+    return table(head, cells, caption=caption, sortable=True, tall=True) if cells else ""
+
+
+def _separation(value: float) -> Cell:
+    if not math.isfinite(value):
+        return Cell("–", value=math.nan)
+    return Cell(f"{value:.2f}", value=value, shade=2.0 * value - 1.0)
+
+
+def best_html(best: Mapping[str, tuple[float, str]], gears: GearNames) -> str:
+    """Return the best single indicator of every state."""
+    rows = [
+        [Cell(state), Cell(f"{value:.2f}", value=value), term_cell(column, gears)]
+        for state, (value, column) in best.items()
+    ]
+    caption = "Best single indicator of each state, between different specimens. The best of many is optimistic."
+    head = ["State", "AUC [-]", "Indicator and channel"]
+    return table(head, rows, caption=caption, sortable=True, text=True) if rows else ""
+
+
+def undefined_html(found: Sequence[IndicatorResult], left_out: Mapping[str, float]) -> str:
+    """Return which indicators have no value in some records, how often, and when that is so.
+
+    Parameters
+    ----------
+    found : sequence of IndicatorResult
+        All results.
+    left_out : mapping of str to float
+        By channel, the share of records that were left out: there every indicator is undefined, for another reason.
+    """
+    rows = []
+    for result in sorted(found, key=lambda r: (r.defined_share, r.column)):
+        missing = 1.0 - result.defined_share - left_out.get(result.channel, 0.0)
+        if missing > 1e-9:
+            known = known_column(result.column, result.gears)
+            reason = known.entry.undefined if known else "its function returned nan"
+            rows.append(
+                [term_cell(result.column, result.gears), Cell(f"{100.0 * missing:.1f}", value=missing), Cell(reason)]
+            )
+    head = ["Indicator and channel", "Undefined [%]", "When"]
+    caption = "Indicators that are undefined in some of the records."
+    return table(head, rows, caption=caption, sortable=True, tall=True, text=True) if rows else ""
+
+
+def definition_html(held: Collection[str]) -> str:
+    """Return the definitions of the indicators that are taken of these quantities."""
+    head = [
+        "Column starts with",
+        "Indicator",
+        "Taken from",
+        "Value",
+        "Unit",
+        "On known signals",
+        "Undefined when",
+        "Source",
+    ]
+    rows = [
+        [
+            Cell(d.name, name=f"term-{d.name}", hint=f"{d.formula}; from {d.signal}"),
+            *(Cell(t) for t in (d.title, d.signal, d.formula, d.unit, d.known, d.undefined, d.source)),
+        ]
+        for d in ALL
+        if any(d.is_taken_of(quantity) for quantity in held)
+    ]
+    return table(head, rows, caption="Definitions of the indicators.", tall=True, text=True)
+
+
+CURVES_SHOWN = 6
+NUMBERS = "indicators.json"
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluated:
+    """Everything the page is made of."""
+
+    table: IndicatorTable
+    settings: AssessmentSettings
+    records: JudgedRecords
+    found: list[IndicatorResult]
+
+    @property
+    def shown(self) -> list[IndicatorResult]:
+        """The best channel of each of the best indicators of different definition."""
+        chosen: dict[str, IndicatorResult] = {}
+        for result in self.found:
+            known = known_column(result.column, result.gears)
+            chosen.setdefault(known.entry.name if known else result.indicator, result)
+        return list(chosen.values())[:CURVES_SHOWN]
+
+
+def evaluated(
+    table: IndicatorTable, settings: AssessmentSettings | None = None, stage: Stage = silent_stage
+) -> Evaluated:
+    """Return what a table of indicators tells of damage.
+
+    Parameters
+    ----------
+    table : IndicatorTable
+        All indicators of the set.
+    settings : AssessmentSettings, optional
+        Default: `AssessmentSettings()`.
+    stage : Stage
+        Told of every step.
+    """
+    chosen = settings or AssessmentSettings()
+    with stage("evaluation", len(table.matrix.names)) as advance:
+        found = assessment(table, chosen, advance)
+    records = judged_records(table.matrix.labels, chosen.seed, chosen.resamples)
+    return Evaluated(table, chosen, records, found)
+
+
+def findings(dataset: Dataset, found: Evaluated) -> list[str]:
+    """Say what the scores mean, which indicators are best, and what survives."""
+    states = found.records.states
+    meaning = meaning_of_scores(dataset.config, scored=bool(states))
+    return [meaning, *indicator_findings(found.found, states, _specimens(found.table))]
+
+
+def write_evaluation(dataset: Dataset, found: Evaluated, folder: Path, *, values: bool = False) -> Path:
+    """Write `evaluation.parquet` and `.csv` (all results, best first) and `indicators.json`; return the CSV's path.
+
+    With `values` also `indicators.parquet`: labels and all indicators of every record, those with a history too.
+    """
+    if values:
+        write_table(found.table.arrow(), folder / "indicators.parquet")
+    results = result_table(found.found)
+    write_table(results, folder / "evaluation.parquet")
+    write_table(results, folder / "evaluation.csv")
+    numbers = report_numbers(dataset, found, findings(dataset, found))
+    write_file(folder / NUMBERS, json.dumps(numbers, indent=1, allow_nan=False) + "\n")
+    return folder / "evaluation.csv"
+
+
+def _specimens(table: IndicatorTable) -> int:
+    return int(np.unique(table.matrix.labels["specimen_id"]).size)
+
+
+def report_numbers(dataset: Dataset, found: Evaluated, sentences: Sequence[str]) -> dict[str, Any]:
+    """Return the content of `indicators.json`; undefined and unreached numbers are null."""
+    table = found.table
+    return {
+        "set": dataset.path.name,
+        "identity": dataset.manifest["identity"],
+        "records": int(table.matrix.values.shape[0]),
+        "specimens": _specimens(table),
+        "states": list(found.records.states),
+        "summary": list(sentences),
+        "indicator_settings": asdict(table.settings),
+        "assessment_settings": asdict(found.settings),
+        "left_out": [str(problem) for problem in table.problems],
+        "notes": note_counts(table),
+    }
+
+
+def note_counts(table: IndicatorTable) -> list[str]:
+    """Return how often each reason for undefined values occurs."""
+    reasons, counts = np.unique([note for note in table.notes if note], return_counts=True)
+    return [f"{count} of {len(table.notes)} records: {reason}" for reason, count in zip(reasons, counts, strict=True)]
+
+
+MOST_RANKED = 600
+"""Columns in the ranking: all of two channels; six would make it 1.4 MB."""
+OF_THE_FILE = (
+    "Trends, smallest sizes found, effects, causes and p-values of every column are in evaluation.csv beside this page."
+)
+HOW_TO_READ = (
+    'Indicators are judged in two designs. "Other specimens" compares healthy with damaged records of all gearboxes. '
+    'There an AUC of 0.5 is chance, and Cliff\'s delta is 2 AUC − 1. "Same specimen" compares each damaged record with '
+    "the healthy one of the same gearbox, operating point and repeat. It gives the share of pairs in which the "
+    "indicator is higher after damage. A score is the mean over the states, turned so that 1 is perfect. The direction "
+    "of turning comes from the same-specimen design. The 95 % limits come from resampled specimens. The p-values come "
+    "from specimen means: Mann-Whitney for other specimens, Wilcoxon for the same specimen. Holm's method adjusts them "
+    "over all indicators, channels and states. Mann-Whitney is conservative here, because healthy and damaged "
+    "gearboxes are the same. NA4, NA4* and NB4 compare each record with the healthy and milder ones of its own "
+    "specimen, in the true order of severity. They know more than indicators of single records, so the summary leaves "
+    "them out."
+)
+
+
+def figures(evaluated: Evaluated, held: Mapping[str, ShownQuantity]) -> dict[str, tuple[Figure, str]]:
+    """Return all figures by file name with their captions; those without data are left out."""
+    names = evaluated.records.states
+    if not names or not evaluated.shown:
+        return {}
+    matrix = evaluated.table.matrix
+    intact = tuple(state for state in ordered_states(matrix.labels) if state not in names)
+    drawn: dict[str, tuple[Figure | None, str]] = {
+        "severity": (
+            severity_figure(matrix, evaluated.shown, names, intact, held),
+            "Indicators over the severity of damage: median (red), 5 to 95 % of the records (blue), specimens (grey).",
+        ),
+        "detection": (
+            detection_figure(matrix, evaluated.records, evaluated.shown, evaluated.settings.false_alarms),
+            f"Share of alarms over the damaged area at {percent(evaluated.settings.false_alarms)} false alarms "
+            "(dashed), between different specimens, with 95 % limits. Dotted: a50 and a90.",
+        ),
+    }
+    return {name: (figure, caption) for name, (figure, caption) in drawn.items() if figure is not None}
+
+
+def ranking_blocks(dataset: Dataset, evaluated: Evaluated) -> list[str]:
+    """Return what is best, and all indicators in order."""
+    found, names = evaluated.found, evaluated.records.states
+    gears = evaluated.table.matrix.gears
+    _, *told = findings(dataset, evaluated)
+    separation = separation_rows(found, names)
+    return [
+        *(html.paragraph(sentence) for sentence in told),
+        best_html(best_by_state(found, names), gears),
+        ranking_html(found[:MOST_RANKED], names),
+        separation_html(separation, names, gears),
+        html.paragraph(HOW_TO_READ),
+    ]
+
+
+def detail_blocks(evaluated: Evaluated, pictures: Mapping[str, tuple[bytes, str]]) -> list[str]:
+    """Return the figures of the best indicators, and what is undefined."""
+    line = _records_behind(evaluated)
+    shown = [name for name in ("severity", "detection") if name in pictures]
+    return [
+        html.figure_grid([html.figure_block(*pictures[name], line) for name in shown]),
+        html.paragraph(OF_THE_FILE),
+        undefined_html(evaluated.found, _left_out(evaluated)),
+    ]
+
+
+def _records_behind(evaluated: Evaluated) -> str:
+    """Return the line that leads from figures to their records."""
+    titles = {result.column: in_words(result.column, result.gears) for result in evaluated.shown}
+    return records_line("All records by", indicator_links(titles))
+
+
+def _left_out(evaluated: Evaluated) -> dict[str, float]:
+    """Return by channel the share of records that could not be used there."""
+    table = evaluated.table
+    rows = len(table.notes)
+    lost = {
+        (p.record_id, channel) for p in table.problems for channel in ([p.channel] if p.channel else table.channels)
+    }
+    return {channel: sum(name == channel for _, name in lost) / rows for channel in table.channels}
+
+
+def evaluation_notes(dataset: Dataset, evaluated: Evaluated) -> list[str]:
+    """Return what was left out, the kinds of damage, and the settings."""
+    table = evaluated.table
+    first, *_, last = evaluated.table.matrix.gears[0].gears
+    settings = ", ".join(f"{name} {value}" for name, value in asdict(table.settings).items() if value is not None)
+    return [
+        *(f"Left out: {problem}" for problem in table.problems),
+        *note_counts(table),
+        *kind_notes(dataset, evaluated.records.states),
+        f"Revolutions averaged: {first} {_range(table.revolutions[:, 0])}, {last} {_range(table.revolutions[:, 1])}. "
+        "Where noise matters, values from averages depend on the number of revolutions (see noise_share).",
+        f"Settings: {settings}; bootstrap seed {evaluated.settings.seed}, "
+        f"{evaluated.records.weights.shape[0] - 1} resamples.",
+    ]
+
+
+def kind_notes(dataset: Dataset, damaged: Sequence[str]) -> list[str]:
+    """Return a note where damaged states are of several kinds: sizes, trends and histories run across ladders."""
+    present = set(dataset.labels().column_names)
+    table = dataset.labels(columns=[name for name in ("state", "fault", "through_face") if name in present])
+    kinds = damage_kinds({name: np.asarray(table.column(name).to_pylist()) for name in table.column_names}, damaged)
+    if len(kinds) < 2:
+        return []
+    listed = "; ".join(f"{kind}: {', '.join(members)}" for kind, members in kinds.items())
+    return [
+        f"The damaged states are of {len(kinds)} kinds ({listed}). Sizes, trends and NA4 are meaningful within one "
+        "kind only. To judge the states of one kind, give --state NAME once for each."
+    ]
+
+
+def _range(values: np.ndarray) -> str:
+    low, high = int(values.min()), int(values.max())
+    return str(low) if low == high else f"{low} to {high}"
