@@ -30,7 +30,7 @@ from diagnostics.judging.evaluation import Design, Entry, HeldOut, held_out, hel
 from diagnostics.page.wording import decimal, limits
 from diagnostics.records.state_classes import HEALTHY, SHAM, damage_kind
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.indicator_result import UNDEFINED
+from diagnostics.statistics.indicator_statistics import UNDEFINED
 
 DESIGN = Design(folds=4, owner=1000, deals=3, fewest=2)
 PERMUTATIONS = 499

@@ -8,7 +8,7 @@ same operating point, energy ratio and sideband energy ratio added. Source: stan
 
 Single indicators: the best of hundreds is chosen on the gearboxes that it is judged on, so its AUC is optimistic. A
 second number is not: gearboxes are dealt into two halves, one chooses indicator and direction, the other judges; mean
-over both ways of ten deals. AUC and direction are those of `diagnostics.statistics.separability`. Source: derived.
+over both ways of ten deals. AUC and direction are those of `indicator_statistics`. Source: derived.
 """
 
 from __future__ import annotations
@@ -24,9 +24,8 @@ from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.records.state_classes import HEALTHY, damage_kind
-from diagnostics.statistics.evaluation import Interval, bootstrap_weights, weighted_auc
-from diagnostics.statistics.scores import area_interval
-from diagnostics.statistics.separability import best_by_state, separability
+from diagnostics.statistics.evaluation import Interval, area_interval, bootstrap_weights, weighted_auc
+from diagnostics.statistics.indicator_statistics import best_by_state, separability
 
 LEVELS, PLAIN, ADDED = ("rms", "sideband_index"), ("kurtosis", "fm4"), ("energy_ratio", "sideband_ratio")
 """Indicators, those of mesh harmonics of the first one."""

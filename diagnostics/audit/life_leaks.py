@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnostics.statistics.evaluation import bootstrap_weights
-from diagnostics.training.life_baselines import Inspections, tree_predictions
+from diagnostics.training.lives import Inspections, tree_predictions
 
 CHANCE = 0.05
 """Of a leak where there is none, over all clues together."""

@@ -24,14 +24,11 @@ from diagnostics.page.html import Cell, figure_block, figure_grid, heading, minu
 from diagnostics.page.style import png_bytes
 from diagnostics.page.tables import interval_cell
 from diagnostics.page.wording import capitalised
-from diagnostics.scoring.benchmark import BASELINES, Benchmark
+from diagnostics.scoring.benchmark import BASELINES, Benchmark, SealedLabels
 from diagnostics.scoring.benchmark_scores import JudgedPart, judged_parts, part_columns
 from diagnostics.scoring.prediction_file import CLASSIFIER, PREDICTIONS_FILE, prediction_table
-from diagnostics.scoring.score_figure import score_figure
-from diagnostics.scoring.score_row import ScoreRow
-from diagnostics.scoring.sealed_labels import SealedLabels
-from diagnostics.statistics.evaluation import RESAMPLES, Interval, bootstrap_weights, interval
-from diagnostics.statistics.scores import area_interval
+from diagnostics.scoring.score import ScoreRow, score_figure
+from diagnostics.statistics.evaluation import RESAMPLES, Interval, area_interval, bootstrap_weights, interval
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
 

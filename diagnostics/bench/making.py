@@ -2,11 +2,17 @@
 
 What nobody may know stands in a folder beside the benchmark: the secret, the simulated sets, the sealed labels. Seeds,
 numbers, order and salt follow from the secret (`derived_secret`), so the same call goes on where it was stopped.
+
+Rows of a test part stand without what tells a state, decided by the roles of columns. Signals, pulses and conditions
+stay. Numbers of records and gearboxes are drawn anew. What follows from the damage, what was drawn for the record and
+what can be computed from the signal do not go along. Which records are shown, told or asked about follows from what the
+benchmark asks. The hash of the sealed labels is published first, the labels themselves later.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -18,17 +24,222 @@ import pyarrow as pa
 
 import siggen
 from diagnostics.base.progress import Stage, silent_stage
-from diagnostics.bench.blind_rows import blind_rows, condition_fields, renumbered, sealed_part
-from diagnostics.bench.cards import benchmark_card
 from diagnostics.bench.conditions import TIERS, Tier, changed
-from diagnostics.bench.derived_secret import derived, seed_of
-from diagnostics.bench.question import Question, Renumbered
+from diagnostics.bench.derived_secret import derived, seed_of, shuffled
+from diagnostics.bench.question import PublishedRecords, Question, Renumbered, Words
 from diagnostics.bench.questions import question_of
-from diagnostics.scoring.benchmark import FACTS, LEARN, SEALED, TESTS, Benchmark, benchmark_facts, open_benchmark
-from siggen.dataset.reading import Dataset
+from diagnostics.records.state_classes import HEALTHY
+from diagnostics.scoring.benchmark import (
+    COMMITMENT,
+    FACTS,
+    LEARN,
+    PER_PART,
+    REVEALED,
+    SEALED,
+    TESTS,
+    Benchmark,
+    benchmark_facts,
+    labels_of,
+    open_benchmark,
+)
+from siggen.dataset.reading import Dataset, as_record
 from siggen.dataset.reading import open as open_set
 from siggen.errors import DatasetError, UsageError
 from siggen.file_writing import write_file
+from siggen.keys.column import Role
+
+UNKNOWN = "unknown"
+TEXTS = ("state", "fault", "severity")
+NUMBERS = ("damaged_area_mm2", "damaged_area_share", "damage_profile_length_mm", "mesh_stiffness_loss")
+"""Columns that every reader of sets expects; of a test record they say nothing."""
+GIVEN = ("operating_point_id", "speed_hz", "torque_nm")
+"""Conditions that every set has."""
+TEETH = "teeth_"
+
+
+def renumbered(dataset: Dataset, shown: PublishedRecords, secret: bytes, name: str, place: int) -> Renumbered:
+    """Return new numbers in an order that only the secret tells, those that are asked about last.
+
+    Parameters
+    ----------
+    dataset : siggen Dataset
+        The simulated set.
+    shown : Shown
+        Which of its records are published.
+    secret : bytes
+    name : str
+        Of the part.
+    place : int
+        Of the part, from 0.
+    """
+    first = (place + 1) * PER_PART
+    specimens = set(dataset.labels(columns=["specimen_id"]).column("specimen_id").to_pylist())
+    ordered = shuffled(secret, f"records/{name}", shown.state_id)
+    ordered.sort(key=lambda one: one in shown.asked)  # stable: both kinds stay in their order
+    gearboxes = shuffled(secret, f"gearboxes/{name}", specimens)
+    return Renumbered(
+        {old: first + new for new, old in enumerate(ordered)},
+        {old: first + new for new, old in enumerate(gearboxes)},
+        shown,
+    )
+
+
+def condition_fields(dataset: Dataset) -> pa.Schema:
+    """Return the columns that are conditions, beside those of every set."""
+    schema = dataset.labels().schema
+    kept = [field for field in schema if (field.metadata or {}).get(b"role") == Role.CONDITION.value.encode()]
+    return pa.schema([field for field in kept if field.name not in GIVEN and not field.name.startswith(TEETH)])
+
+
+def blind_rows(dataset: Dataset, numbers: Renumbered) -> list[dict[str, Any]]:
+    """Return the rows of a part by their new numbers, with signals."""
+    found = []
+    kept = [*GIVEN, *condition_fields(dataset).names]
+    kept += [name for name in dataset.labels().column_names if name.startswith(TEETH)]
+    for batch in dataset.records(batch_rows=16):
+        for place, record in enumerate(batch.column("record_id").to_pylist()):
+            if record in numbers.record:
+                row = as_record(batch.slice(place, 1))
+                found.append(_blind(row, numbers, kept, [channel.column for channel in dataset.channels]))
+    return sorted(found, key=lambda row: int(row["record_id"]))
+
+
+def _blind(row: dict[str, Any], numbers: Renumbered, kept: list[str], signals: list[str]) -> dict[str, Any]:
+    told = row["record_id"] in numbers.shown.told
+    return {
+        **{name: row[name] for name in kept},
+        "record_id": numbers.record[row["record_id"]],
+        "specimen_id": numbers.gearbox[row["specimen_id"]],
+        "state_id": numbers.shown.state_id[row["record_id"]],
+        "repeat": 0,
+        "split": numbers.split(row["record_id"]),
+        **dict.fromkeys(TEXTS, HEALTHY if told else UNKNOWN),
+        "faulty_gear": "none" if told else UNKNOWN,
+        **dict.fromkeys(NUMBERS, 0.0 if told else math.nan),
+        "signals": tuple(row[name].copy() for name in signals),
+        "tacho_s": row["tacho_s"],
+    }
+
+
+def sealed_part(dataset: Dataset, numbers: Renumbered, life: Mapping[str, pa.Table]) -> dict[str, Any]:
+    """Return labels, damaged teeth and tables of `life/` of a part, columns by name, ascending by new numbers."""
+    table = dataset.labels()
+    targets = [
+        field.name for field in table.schema if (field.metadata or {}).get(b"role") == Role.TARGET.value.encode()
+    ]
+    labels = table.select(["record_id", "state_id", *targets]).to_pylist()
+    labels = _published([{**row, "simulated_record_id": row["record_id"]} for row in labels], numbers)
+    damage = _published(dataset.damage().select(["record_id", "gear", "tooth"]).to_pylist(), numbers)
+    return {
+        "labels": _columns(labels),
+        "damage": _columns(damage) or {"record_id": [], "gear": [], "tooth": []},
+        **({"life": {name: table.to_pydict() for name, table in life.items()}} if life else {}),
+    }
+
+
+def _published(rows: list[dict[str, Any]], numbers: Renumbered) -> list[dict[str, Any]]:
+    """Return the rows of published records by their new numbers."""
+    known = numbers.record
+    return [{**row, "record_id": known[row["record_id"]]} for row in rows if row["record_id"] in known]
+
+
+def _columns(rows: list[dict[str, Any]]) -> dict[str, list[Any]]:
+    rows.sort(key=lambda row: int(row["record_id"]))
+    return {name: [row[name] for row in rows] for name in (rows[0] if rows else ())}
+
+
+CLOSING, LICENCE = "## Licence, authors, citation\n", "license: "
+
+
+def benchmark_card(facts: Mapping[str, Any], learn: Any, card: str, words: Words) -> str:
+    """Return the card of the whole benchmark; licence, authors and citation are those of the card to learn from."""
+    _, closing, said = card.partition(CLOSING)
+    licence = next((line for line in card.splitlines() if line.startswith(LICENCE)), "")
+    rows = "\n".join(f"| `{TESTS}/{name}` | {facts['records'][name]} |" for name in facts["parts"])
+    return f"""{_front_matter(facts, licence, words.train)}# {facts["title"]}, {facts["tier"]}
+
+{words.subject} in simulated vibration records of {learn.duration_s:g} s at {learn.fs_hz:g} Hz. **The data are
+synthetic**: they were computed by siggen, simulation version {facts["simulation_version"]}, not measured. Labels of the
+test parts are sealed until their maker reveals them.
+
+| part | records |
+|---|---|
+| `{LEARN}`, with labels | {facts["records"][LEARN]} |
+{rows}
+
+## Rules
+
+{words.rules}
+
+## Scores
+
+Digest: `{facts["digest"]}`. It is part of every score; a score of another digest is another benchmark's.
+
+    siggen-diagnostics score . mine.parquet   # its maker; others once `revealed.json` is here
+    sha256sum revealed.json                   # is what `commitment.json` says
+
+`commitment.json` holds the SHA-256 of labels, salt, seeds and configurations, published before the first score.
+`revealed.json` is that file. `siggen.generate` makes the test parts again from its configurations.
+{closing}{said}"""
+
+
+def _front_matter(facts: Mapping[str, Any], licence: str, train: str) -> str:
+    """Return what Hugging Face reads: every part as a configuration of its own."""
+    learn = "\n".join(_files(split, f"{LEARN}/data/{split}-*.parquet") for split in ("train", "validation", "test"))
+    tests = "\n".join(
+        f"- config_name: {name}\n  data_files:\n"
+        + _files("test", f"{TESTS}/{name}/data/test-*.parquet")
+        + "\n"
+        + _files(train, f"{TESTS}/{name}/data/train-*.parquet")
+        for name in facts["parts"]
+    )
+    said = f"{licence}\n" if licence else ""
+    return f"""---
+pretty_name: {facts["title"]}, {facts["tier"]}
+{said}tags: [synthetic, vibration, gearbox, condition-monitoring, benchmark]
+configs:
+- config_name: {LEARN}
+  default: true
+  data_files:
+{learn}
+{tests}
+---
+"""
+
+
+def _files(split: str, path: str) -> str:
+    return f"  - split: {split}\n    path: {path}"
+
+
+def commit(benchmark: Benchmark, sealed: Path | None = None) -> str:
+    """Return the SHA-256 of the sealed labels, and write it into the benchmark; labels as of `labels_of`.
+
+    Raises
+    ------
+    UsageError
+        If the labels are of another benchmark, or others were committed to.
+    """
+    found = labels_of(benchmark, sealed).commitment
+    content = {"sha256": found, "digest": benchmark.digest, "of": REVEALED}
+    write_file(benchmark.path / COMMITMENT, json.dumps(content, indent=1) + "\n")
+    return found
+
+
+def reveal(benchmark: Benchmark, sealed: Path | None = None) -> Path:
+    """Write the sealed labels into the benchmark; return the file. Labels as of `labels_of`.
+
+    Raises
+    ------
+    UsageError
+        If nothing was committed to, or other labels.
+    """
+    if benchmark.commitment() is None:
+        raise UsageError(f"{benchmark.path}: nothing was committed to; run `siggen-diagnostics bench commit` first")
+    found, target = labels_of(benchmark, sealed), benchmark.path / REVEALED
+    if not target.exists() or not target.samefile(found.file):
+        write_file(target, found.file.read_bytes())
+    return target
+
 
 LEARNT = str(Path(__file__).with_name("siggen_bench.yaml"))
 """The part of siggen-bench to learn from."""

@@ -111,7 +111,7 @@ def commit(folder: Bench, labels: Sealed = None) -> None:
 
     Example: siggen-diagnostics bench commit runs/bench_tiny
     """
-    from diagnostics.bench.revealing import commit as committed
+    from diagnostics.bench.making import commit as committed
     from diagnostics.scoring.benchmark import open_benchmark
 
     echo(committed(open_benchmark(folder), labels))
@@ -123,7 +123,7 @@ def reveal(folder: Bench, labels: Sealed = None) -> None:
 
     Example: siggen-diagnostics bench reveal runs/bench_tiny
     """
-    from diagnostics.bench.revealing import reveal as revealed
+    from diagnostics.bench.making import reveal as revealed
     from diagnostics.scoring.benchmark import open_benchmark
 
     echo(str(revealed(open_benchmark(folder), labels)))
@@ -172,8 +172,7 @@ def board(
     """
     from diagnostics.base.beside import beside
     from diagnostics.bench.leaderboard import board_entries, write_board
-    from diagnostics.scoring.benchmark import open_benchmark
-    from diagnostics.scoring.sealed_labels import labels_of
+    from diagnostics.scoring.benchmark import labels_of, open_benchmark
 
     found = open_benchmark(folder)
     judged = board_entries(found, labels_of(found, labels), entries, seed)

@@ -119,7 +119,7 @@ def _ranked_tables(
     from diagnostics.records.state_classes import chosen_states
     from diagnostics.records.usable_records import check_states
     from diagnostics.report.indicators import evaluated, findings, write_evaluation
-    from diagnostics.statistics.assessment import AssessmentSettings
+    from diagnostics.statistics.indicator_statistics import AssessmentSettings
     from siggen.dataset.reading import open as open_set
 
     own, states = load_indicators(computing.indicator), ranking.state or ()

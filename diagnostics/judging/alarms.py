@@ -28,10 +28,9 @@ from diagnostics.judging.learners import BestColumn, Odds
 from diagnostics.judging.of_split import Training
 from diagnostics.records.gear_train import PAIR, GearNames
 from diagnostics.records.state_classes import HEALTHY, SHAM, damage_kinds, ordered_states
-from diagnostics.statistics.assessment import size_interval
 from diagnostics.statistics.detectable_size import detection_curve, size_at, weighted_quantile
-from diagnostics.statistics.evaluation import Interval, bootstrap_weights
-from diagnostics.statistics.scores import area, area_interval
+from diagnostics.statistics.evaluation import Interval, area, area_interval, bootstrap_weights
+from diagnostics.statistics.indicator_statistics import size_interval
 from diagnostics.training.feature_classifier import DEFAULT_STRENGTH
 from diagnostics.training.referenced import healthy_referenced
 

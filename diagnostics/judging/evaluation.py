@@ -20,8 +20,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.statistics.evaluation import Interval, bootstrap_weights, column_auc, fewest_gearboxes
-from diagnostics.statistics.scores import area_interval
+from diagnostics.statistics.evaluation import Interval, area_interval, bootstrap_weights, column_auc, fewest_gearboxes
 
 FEWEST_SPECIMENS = 4
 RESAMPLES = 200

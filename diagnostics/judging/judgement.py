@@ -21,13 +21,15 @@ from diagnostics.statistics.evaluation import (
     RESAMPLES,
     UNKNOWN,
     Interval,
+    IntervalScores,
     Predictions,
+    area,
     bootstrap_weights,
     interval,
     macro_auroc,
+    scores,
     weighted_auc,
 )
-from diagnostics.statistics.scores import IntervalScores, area, scores
 
 INDICATORS, BOOSTING, RMS_ALONE, NETWORK = "indicators", "boosting", "rms", "network"
 NETWORK_REFERENCED, REFERENCED = "network_referenced", "healthy_referenced"

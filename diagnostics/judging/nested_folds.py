@@ -18,8 +18,14 @@ import numpy as np
 
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.judging.evaluation import Design
-from diagnostics.statistics.evaluation import Predictions, bootstrap_weights, macro_auroc
-from diagnostics.statistics.scores import IntervalScores, area_interval, scores
+from diagnostics.statistics.evaluation import (
+    IntervalScores,
+    Predictions,
+    area_interval,
+    bootstrap_weights,
+    macro_auroc,
+    scores,
+)
 from diagnostics.training.feature_classifier import state_index
 from diagnostics.training.splits import SpecimenSplit
 

@@ -15,8 +15,7 @@ from math import log
 import numpy as np
 
 from diagnostics.machine.machine import Machine
-from diagnostics.statistics.change_score import FEWEST
-from diagnostics.statistics.conditions import Condition
+from diagnostics.statistics.change_score import FEWEST, Condition
 
 SPEED_RATIO = 1.05
 """Up to which indicators are compared directly: a line moves by less than the width of most modes."""

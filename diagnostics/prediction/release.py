@@ -19,7 +19,7 @@ from diagnostics.prediction.training_distance import TrainingDistance, calibrate
 from diagnostics.records.gear_train import GearNames
 from diagnostics.records.record_classes import set_classes
 from diagnostics.records.recording import names_of, recordings
-from diagnostics.statistics.scores import IntervalScores
+from diagnostics.statistics.evaluation import IntervalScores
 from diagnostics.training.feature_classifier import FeatureClassifier
 from diagnostics.training.referenced import healthy_referenced, log_values, reference_speed_ratio
 from diagnostics.training.splits import SpecimenSplit
@@ -161,7 +161,7 @@ def release_scores(training: Training, found: Release) -> dict[str, Any]:
 def save_release(training: Training, found: Release, table: pa.Table, folder: Path) -> None:
     """Write the variant's classifier under names that begin with `referenced_`, then `model.json` over all files."""
     from diagnostics.indicators.classifier_table import table_settings
-    from diagnostics.training.classifier_file import save_classifier
+    from diagnostics.training.feature_classifier import save_classifier
 
     variant = found.referenced
     if variant:

@@ -29,14 +29,14 @@ from diagnostics.prediction.release import REFERENCED
 from diagnostics.prediction.training_distance import TrainingDistance
 from diagnostics.scoring.prediction_file import MODELS_FOLDER
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.training.classifier_file import (
+from diagnostics.training.feature_classifier import (
     CLASSIFIER_FILE,
     NAMES_FILE,
+    FeatureClassifier,
     classifier_identity,
     load_classifier,
     load_settings,
 )
-from diagnostics.training.feature_classifier import FeatureClassifier
 from siggen.errors import UsageError, how_to_install
 
 if TYPE_CHECKING:

@@ -27,7 +27,7 @@ from diagnostics.records.recording import names_of
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.scoring.prediction_file import PredictedRecords, predicted_rows, write_predictions
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.training.classifier_file import save_classifier
+from diagnostics.training.feature_classifier import save_classifier
 from diagnostics.training.realism import meaning_of_scores
 from diagnostics.training.splits import TEST, VALIDATION, SpecimenSplit
 from siggen.dataset.reading import Dataset

@@ -33,8 +33,7 @@ from diagnostics.page.wording import (
 from diagnostics.records.record_classes import STATE
 from diagnostics.report.indicators import in_a_sentence
 from diagnostics.scoring.score import Scores
-from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.scores import IntervalScores
+from diagnostics.statistics.evaluation import Interval, IntervalScores
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -19,7 +19,7 @@ from diagnostics.page.tables import records_line, records_link, state_links
 from diagnostics.records.gear_train import GearMesh, meshes_of
 from diagnostics.records.recording import Recording, one_recording
 from diagnostics.records.state_classes import HEALTHY
-from diagnostics.report import classifier_tables as score_figures
+from diagnostics.report.classifier_tables import permutation_figure, score_figure
 from diagnostics.signal.spectrum import OrderSpectrum, order_spectrum, strongest_harmonic
 from diagnostics.training.splits import TEST
 from siggen.dataset.reading import Dataset
@@ -389,8 +389,8 @@ def _draw_damage(drawing: Drawing, dataset: Dataset, classes: tuple[str, ...], c
 def _draw_scores(drawing: Drawing, training: Training) -> None:
     specimens = training.judged[0].scores.specimens
     caption = f"Scores on {specimens} test specimens, with 95 % intervals from resampled specimens. Dashed: chance."
-    drawing.scores["scores"] = (score_figures.score_figure(training), caption)
+    drawing.scores["scores"] = (score_figure(training), caption)
     named = {f"{said} named": records_link(split="test", named=said) for said in ("wrongly", "rightly")}
     drawing.behind["scores"] = records_line("Test records", named)
     caption = "Permutation control: training with shuffled labels (dots) must give values around 0.5."
-    drawing.scores["permuted"] = (score_figures.permutation_figure(training), caption)
+    drawing.scores["permuted"] = (permutation_figure(training), caption)

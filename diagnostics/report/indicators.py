@@ -27,11 +27,17 @@ from diagnostics.page.wording import counted, limits, percent
 from diagnostics.records.channel_quantities import ShownQuantity
 from diagnostics.records.gear_train import GearNames
 from diagnostics.records.state_classes import HEALTHY, damage_kinds, ordered_states
-from diagnostics.statistics.assessment import SIZES, AssessmentSettings, assessment, result_table
 from diagnostics.statistics.detectable_size import detection_curve
-from diagnostics.statistics.indicator_result import IndicatorResult
-from diagnostics.statistics.judged_records import JudgedRecords, judged_records
-from diagnostics.statistics.multiple_tests import smallest_paired_p
+from diagnostics.statistics.indicator_statistics import (
+    SIZES,
+    AssessmentSettings,
+    IndicatorResult,
+    JudgedRecords,
+    assessment,
+    judged_records,
+    result_table,
+    smallest_paired_p,
+)
 from diagnostics.training.realism import meaning_of_scores
 from siggen.dataset.reading import Dataset
 from siggen.file_writing import write_file

@@ -31,18 +31,20 @@ from diagnostics.scoring.remaining_life import COLUMNS
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.first_detection import IN_A_ROW, QUIET, Watch, rise, watched
 from diagnostics.statistics.life_scores import BINS, QUANTILES, LifeScores, life_scores
-from diagnostics.training.life_baselines import (
+from diagnostics.training.lives import (
     AGE,
     AREAS,
     CONSTANT,
     FOLDS,
     HISTORY,
+    INDICATORS,
     OUTLOOK,
     Inspections,
     baseline_predictions,
     history_predictions,
+    inspections,
+    inspections_of,
 )
-from diagnostics.training.life_rows import INDICATORS, inspections, inspections_of
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, how_to_install
 from siggen.file_writing import write_file

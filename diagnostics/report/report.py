@@ -42,8 +42,7 @@ from diagnostics.report.indicators import Evaluated, evaluated, figures, write_e
 from diagnostics.report.report_page import ANSWER, CAPTION, FIRST, Reported, report_page
 from diagnostics.report.sentences import summary
 from diagnostics.scoring.score import Scores, score
-from diagnostics.statistics.assessment import AssessmentSettings
-from diagnostics.statistics.separability import Separability, separability
+from diagnostics.statistics.indicator_statistics import AssessmentSettings, Separability, separability
 from diagnostics.training.realism import is_error_free
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, how_to_install

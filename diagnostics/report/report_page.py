@@ -41,7 +41,7 @@ from diagnostics.report.sentences import (
     trust_sentence,
 )
 from diagnostics.scoring.score import Scores
-from diagnostics.statistics.separability import Separability
+from diagnostics.statistics.indicator_statistics import Separability
 from diagnostics.training.realism import is_error_free, meaning_of_scores
 from siggen.dataset.reading import Dataset
 

@@ -23,7 +23,7 @@ from diagnostics.page.wording import (
 from diagnostics.records.record_classes import FAULT, STATE
 from diagnostics.report.indicators import in_a_sentence
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.separability import Separability, best_by_state
+from diagnostics.statistics.indicator_statistics import Separability, best_by_state
 from diagnostics.training.realism import meaning_of_scores
 
 CHANCE_MARGIN = 0.1

@@ -14,7 +14,7 @@ import pyarrow.compute as pc
 from diagnostics.records.record_classes import set_classes
 from diagnostics.records.state_classes import CLASS
 from diagnostics.scoring.abstain import CONFIDENCE
-from diagnostics.scoring.benchmark import BASELINES, PER_PART, Benchmark
+from diagnostics.scoring.benchmark import BASELINES, PER_PART, Benchmark, SealedLabels, labelled, labels_of
 from diagnostics.scoring.detect import DAMAGE
 from diagnostics.scoring.grade import PROBABILITY
 from diagnostics.scoring.prediction_file import (
@@ -27,7 +27,6 @@ from diagnostics.scoring.prediction_file import (
     refusal,
 )
 from diagnostics.scoring.score import TEST, YOURS, Answers, Scores, scores_of
-from diagnostics.scoring.sealed_labels import SealedLabels, labelled, labels_of
 from diagnostics.scoring.tasks import truth_of
 from diagnostics.scoring.truth import Truth, is_lives
 from siggen.dataset.reading import Dataset

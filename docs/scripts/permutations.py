@@ -27,7 +27,7 @@ from diagnostics.audit.signal_attackers import attackers_on, signal_attackers
 from diagnostics.audit.traps import separability_findings
 from diagnostics.base.single_thread import single_thread
 from diagnostics.judging.evaluation import Entry
-from diagnostics.statistics.scores import clopper_pearson
+from diagnostics.statistics.evaluation import clopper_pearson
 from siggen.keys.column import Role
 
 OF_STATE = (Role.TARGET, Role.CONSEQUENCE)

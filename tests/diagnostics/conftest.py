@@ -223,18 +223,18 @@ def make_dataset() -> Callable[..., MemoryDataset]:
 @pytest.fixture(autouse=True, scope="session")
 def light_classifiers() -> Iterator[None]:
     """Ten trees and two strengths of the penalty, which tell these sets apart as well: all take half of a report."""
-    from diagnostics.training import classifiers, life_baselines
+    from diagnostics.training import classifiers, lives
 
     choose = classifiers._chosen_strength
 
     def of_two(values: Any, truth: Any, gearbox: Any, strengths: Sequence[float], **given: Any) -> Any:
         return choose(values, truth, gearbox, strengths[2::2] or strengths, **given)
 
-    model, of_life = classifiers._model, life_baselines._model
+    model, of_life = classifiers._model, lives._model
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(classifiers, "_chosen_strength", of_two)
         patch.setattr(classifiers, "_model", lambda trees, seed: model(min(trees, 10), seed))
-        patch.setattr(life_baselines, "_model", lambda q, seed: of_life(q, seed).set_params(max_iter=10))
+        patch.setattr(lives, "_model", lambda q, seed: of_life(q, seed).set_params(max_iter=10))
         yield
 
 

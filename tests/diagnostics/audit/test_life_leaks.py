@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from diagnostics.audit.life_leaks import life_leaks
-from diagnostics.training.life_baselines import Inspections
+from diagnostics.training.lives import Inspections
 
 UNITS = 60
 

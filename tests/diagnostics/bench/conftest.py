@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from diagnostics.bench.conditions import Tier
-from diagnostics.bench.making import SIMULATED, WantedBench, make_benchmark
-from diagnostics.bench.revealing import commit
+from diagnostics.bench.making import SIMULATED, WantedBench, commit, make_benchmark
 from diagnostics.scoring.benchmark import SEALED, Benchmark, open_benchmark
 from tests.shared import shared_folder
 

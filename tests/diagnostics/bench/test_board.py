@@ -13,9 +13,17 @@ import pytest
 
 import diagnostics
 from diagnostics.base.progress import silent_stage
-from diagnostics.bench.baselines import BESIDE, CHANCE, KURTOGRAM, NETWORK, STACK, entries
+from diagnostics.bench.baselines import (
+    BESIDE,
+    CHANCE,
+    KURTOGRAM,
+    NETWORK,
+    STACK,
+    benchmark_records,
+    entries,
+    seen_records,
+)
 from diagnostics.bench.leaderboard import BOARD, NUMBERS
-from diagnostics.bench.seen_records import benchmark_records, seen_records
 from diagnostics.scoring.benchmark import open_benchmark
 from tests.command import command
 from tests.diagnostics.bench.conftest import Made

@@ -17,10 +17,10 @@ import diagnostics
 import siggen
 from diagnostics.bench.conditions import LIFE_CONDITIONS
 from diagnostics.bench.leaderboard import BOARD, NUMBERS
-from diagnostics.bench.life_predictions import pace
+from diagnostics.bench.life_question import pace
 from diagnostics.bench.making import SEALED, SECRET_FILE, SIMULATED
 from diagnostics.scoring.benchmark import open_benchmark
-from diagnostics.training.life_baselines import AGE, DEBRIS
+from diagnostics.training.lives import AGE, DEBRIS
 from siggen.dataset.reading import Dataset
 from tests.command import Ended, command
 from tests.diagnostics.bench.attackers import SIGNAL, attackers

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from diagnostics.judging.judgement import comparison, state_auc
-from diagnostics.statistics.evaluation import Predictions
-from diagnostics.statistics.scores import scores
+from diagnostics.statistics.evaluation import Predictions, scores
 
 CLASSES = ("healthy", "severe")
 

@@ -9,7 +9,7 @@ import pytest
 from diagnostics.records.gear_train import PAIR
 from diagnostics.report.indicators import best_by_state, indicator_findings, undefined_html
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.indicator_result import UNDEFINED, IndicatorResult, StateResult
+from diagnostics.statistics.indicator_statistics import UNDEFINED, IndicatorResult, StateResult
 
 NAN = math.nan
 

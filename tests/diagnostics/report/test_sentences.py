@@ -23,7 +23,7 @@ from diagnostics.report.sentences import (
     trust_sentence,
 )
 from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.separability import Separability
+from diagnostics.statistics.indicator_statistics import Separability
 
 NAN = math.nan
 UNDEFINED = Interval(NAN, NAN, NAN)

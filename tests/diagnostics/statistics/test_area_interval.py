@@ -6,8 +6,13 @@ import numpy as np
 import pytest
 
 from diagnostics.judging.evaluation import wins
-from diagnostics.statistics.evaluation import bootstrap_weights, interval
-from diagnostics.statistics.scores import area_interval, clopper_pearson, effective_size
+from diagnostics.statistics.evaluation import (
+    area_interval,
+    bootstrap_weights,
+    clopper_pearson,
+    effective_size,
+    interval,
+)
 
 RESAMPLES, TRIALS = 100, 150
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.statistics.change_score import attainable_rate, change_score
-from diagnostics.statistics.conditions import Condition
+from diagnostics.statistics.change_score import Condition, attainable_rate, change_score
 from siggen.errors import UsageError
 
 FEATURES = 80

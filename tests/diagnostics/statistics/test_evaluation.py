@@ -14,11 +14,11 @@ from diagnostics.statistics.evaluation import (
     bootstrap_weights,
     interval,
     macro_auroc,
+    scores,
     weighted_auc,
     weighted_midranks,
 )
-from diagnostics.statistics.scores import scores
-from diagnostics.statistics.separability import weighted_spearman
+from diagnostics.statistics.indicator_statistics import weighted_spearman
 
 ONE = np.ones((1, 40))
 

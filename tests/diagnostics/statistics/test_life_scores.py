@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnostics.statistics.life_scores import life_bins, life_scores, nasa, pinball, unit_folds
-from diagnostics.training.life_baselines import remaining_of_age, weibull_lives
+from diagnostics.training.lives import remaining_of_age, weibull_lives
 
 LIFE_H = 60.0
 

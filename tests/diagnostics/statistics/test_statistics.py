@@ -12,12 +12,15 @@ from scipy import stats
 from scipy.stats import mannwhitneyu, wilcoxon
 from sklearn.isotonic import IsotonicRegression
 
-from diagnostics.statistics.assessment import cohens_d, explained_share, paired_d
 from diagnostics.statistics.detectable_size import detection_curve, isotonic, size_at, weighted_quantile
-from diagnostics.statistics.judged_records import ladder_steps, monotonicity
-from diagnostics.statistics.multiple_tests import (
+from diagnostics.statistics.indicator_statistics import (
+    cohens_d,
+    explained_share,
     false_discovery,
     holm,
+    ladder_steps,
+    monotonicity,
+    paired_d,
     paired_p,
     paired_records,
     shares_above,

@@ -19,15 +19,17 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import record_table
 from diagnostics.records.usable_records import with_channels
-from diagnostics.statistics.scores import scores
-from diagnostics.statistics.separability import separability
-from diagnostics.training.classifier_file import load_classifier, save_classifier, untrusted_types
+from diagnostics.statistics.evaluation import scores
+from diagnostics.statistics.indicator_statistics import separability
 from diagnostics.training.classifiers import STRENGTHS, LogisticBaseline, trained
 from diagnostics.training.feature_classifier import (
     DEFAULT_STRENGTH,
     FeatureClassifier,
+    load_classifier,
     permutation_control,
     rms_features,
+    save_classifier,
+    untrusted_types,
 )
 from diagnostics.training.splits import SpecimenSplit, specimen_split
 from siggen.errors import UsageError
@@ -152,7 +154,7 @@ def test_a_process_that_has_imported_nothing_else_reads_a_classifier(
     model: FeatureClassifier, split: SpecimenSplit, tmp_path: Path
 ) -> None:
     save_classifier(model, IndicatorSettings(), "identity", tmp_path)
-    code = "import sys; from pathlib import Path; from diagnostics.training.classifier_file import load_classifier\n"
+    code = "import sys; from pathlib import Path; from diagnostics.training.feature_classifier import load_classifier\n"
     code += "print(load_classifier(Path(sys.argv[1])).classes)\n"
     code += "assert 'torch' not in sys.modules"  # seconds of every command that reads a classifier
     found = subprocess.run([sys.executable, "-c", code, tmp_path], capture_output=True, text=True, check=False)

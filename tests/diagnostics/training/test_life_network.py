@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnostics.training.average_rows import STEPS, AveragedRecords, average_rows
-from diagnostics.training.life_baselines import remaining_of_age, weibull_lives
+from diagnostics.training.lives import remaining_of_age, weibull_lives
 
 torch = pytest.importorskip("torch")
 
