@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from diagnostics.indicators.classifier_table import table
+    from diagnostics.judging.alarms import evaluate
     from diagnostics.loader.window_arrays import windows
     from diagnostics.scoring.benchmark import open_benchmark
     from diagnostics.scoring.benchmark_scores import score_benchmark
@@ -21,6 +22,7 @@ __all__ = [
     "BoostingBaseline",
     "LogisticBaseline",
     "averages",
+    "evaluate",
     "open_benchmark",
     "score",
     "score_benchmark",
@@ -34,6 +36,7 @@ _HOMES = {
     "score": "diagnostics.scoring.score",
     "table": "diagnostics.indicators.classifier_table",
     "averages": "diagnostics.training.average_rows",
+    "evaluate": "diagnostics.judging.alarms",
     "windows": "diagnostics.loader.window_arrays",
     "LogisticBaseline": "diagnostics.training.classifiers",
     "BoostingBaseline": "diagnostics.training.classifiers",

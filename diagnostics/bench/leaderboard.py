@@ -27,7 +27,7 @@ from diagnostics.page.wording import capitalised
 from diagnostics.scoring.benchmark import BASELINES, Benchmark, SealedLabels
 from diagnostics.scoring.benchmark_scores import JudgedPart, judged_parts, part_columns
 from diagnostics.scoring.prediction_file import CLASSIFIER, PREDICTIONS_FILE, prediction_table
-from diagnostics.scoring.score import ScoreRow, score_figure
+from diagnostics.scoring.score_rows import ScoreRow, score_figure
 from diagnostics.statistics.evaluation import RESAMPLES, Interval, area_interval, bootstrap_weights, interval
 from siggen.errors import UsageError
 from siggen.file_writing import write_file

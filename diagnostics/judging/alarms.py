@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
+from copy import deepcopy
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -33,6 +34,7 @@ from diagnostics.statistics.evaluation import Interval, area, area_interval, boo
 from diagnostics.statistics.indicator_statistics import size_interval
 from diagnostics.training.feature_classifier import DEFAULT_STRENGTH
 from diagnostics.training.referenced import healthy_referenced
+from siggen.errors import UsageError
 
 FALSE_ALARMS, FOUND, CHANCE = 0.05, 0.9, 0.5
 FEWEST_HEALTHY = 20
@@ -137,6 +139,18 @@ class JudgedDetector:
     def told(self) -> tuple[str, ...]:
         """States that are told from healthy, by their size."""
         return tuple(sorted(filter(self.tells, self.states), key=lambda state: self.states[state].area_mm2))
+
+    def __str__(self) -> str:
+        """Return AUC and alarms by state, as text."""
+        head = f"{self.title}: {self.records} records of {self.specimens} gearboxes; limits of 95 % over gearboxes"
+        told = {"every damage": (self.every, self.share)} | {k: (s.auc, s.share) for k, s in self.states.items()}
+        told |= {"sham": (self.sham, None)} if self.sham else {}
+        rows = [
+            f"  {name}: AUC {auc.value:.3f} [{auc.low:.3f}, {auc.high:.3f}]"
+            + (f", alarms {share.value:.0%} [{share.low:.0%}, {share.high:.0%}]" if share else "")
+            for name, (auc, share) in told.items()
+        ]
+        return "\n".join([head, *rows])
 
     def numbers(self) -> dict[str, Any]:
         """Return everything for JSON; undefined and unreached numbers are null."""
@@ -319,6 +333,53 @@ def judged_detectors(matrix: FeatureMatrix, training: Training | None, seed: int
     return Detectors(alone, referenced if kept.any() else {})
 
 
+def evaluate(model: Any, data: FeatureMatrix, *, beside: bool = False, seed: int = 0) -> JudgedDetector:
+    """Judge a classifier of your own as a report judges its own: on every gearbox, by what has learnt on others.
+
+    Parameters
+    ----------
+    model
+        Classifier of scikit-learn, or anything with `fit(X, y)` or `fit(X, y, groups)` and `predict_proba(X)`. Each of
+        five folds fits a copy to whether records are damaged.
+    data : FeatureMatrix
+        What `diagnostics.table` returned.
+    beside : bool
+        Whether it sees logarithms minus those of other healthy records of the same gearbox.
+    seed : int
+        Of folds and resampled gearboxes; 0 gives those of a report.
+
+    Returns
+    -------
+    JudgedDetector
+        AUC of every state with 95 % limits over gearboxes, share of alarms, size found; `print` shows them.
+
+    Raises
+    ------
+    UsageError
+        If the model lacks a method, or fewer than four gearboxes have healthy or damaged records.
+    """
+    if lacking := [name for name in ("fit", "predict_proba") if not hasattr(model, name)]:
+        raise UsageError(f"evaluate: received {type(model).__name__} without {' and '.join(lacking)}; both are needed")
+    taken = healthy_referenced(data)[0] if beside else data
+    if too_few(taken):
+        raise UsageError(
+            f"evaluate: received too few gearboxes; allowed: {FEWEST_SPECIMENS} or more with healthy records, and as "
+            f"many with damaged ones{', each beside another healthy one' if beside else ''}"
+        )
+    entry = Entry(type(model).__name__, lambda: Odds(deepcopy(model)), taken.values, np.ones(len(taken.values), bool))
+    damaged, fold = taken.labels["fault"] != HEALTHY, DESIGN.dealt(taken.groups, seed)[0]
+    score = pooled_scores(entry, damaged, taken.groups, fold)[0]
+    found = judged_alarm(entry.name, score, taken.labels, seed, referenced=beside)
+    assert found is not None
+    return found
+
+
+def too_few(matrix: FeatureMatrix) -> bool:
+    """Return whether fewer than four gearboxes have healthy, or damaged, records."""
+    damaged = matrix.labels["fault"] != HEALTHY
+    return min(np.unique(matrix.groups[damaged == side]).size for side in (False, True)) < FEWEST_SPECIMENS
+
+
 def _network(
     judged: tuple[Judged, ...], name: str, rows: FeatureMatrix, training: Training, seed: int
 ) -> dict[str, JudgedDetector]:
@@ -353,7 +414,7 @@ def _cross_fitted(matrix: FeatureMatrix, seed: int, *, referenced: bool) -> dict
     """Return indicator, classifiers and the choice among them; empty with too few gearboxes of either side."""
     labels, specimen = matrix.labels, matrix.groups
     damaged = labels["fault"] != HEALTHY
-    if min(np.unique(specimen[damaged == side]).size for side in (False, True)) < FEWEST_SPECIMENS:
+    if too_few(matrix):
         return {}
     fold = DESIGN.dealt(specimen, seed)[0]
     entries = _entries(matrix, seed, referenced=referenced)

@@ -8,6 +8,7 @@ leaving out groups: (1 - H_gg)^-1 e_g, derived.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from inspect import signature
 from typing import Any
 
 import numpy as np
@@ -110,7 +111,7 @@ class Odds:
     Parameters
     ----------
     classifier
-        With `fit(X, y, groups)` and `predict_proba(X)`.
+        With `fit(X, y)` or `fit(X, y, groups)`, and `predict_proba(X)`.
     """
 
     def __init__(self, classifier: Any) -> None:
@@ -118,7 +119,8 @@ class Odds:
 
     def fit(self, X: np.ndarray, y: np.ndarray, groups: np.ndarray) -> Odds:
         """Fit to X (n, columns) and y (n,)."""
-        self.classifier.fit(X, y, groups)
+        given = (X, y, groups) if "groups" in signature(self.classifier.fit).parameters else (X, y)
+        self.classifier.fit(*given)
         return self
 
     def score(self, X: np.ndarray) -> np.ndarray:

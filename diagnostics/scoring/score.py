@@ -1,12 +1,12 @@
 """Predictions judged on the test records of a set, with limits over gearboxes, beside the classifiers of a training.
 
-Scores are rows: for reading, as a figure, and as a table for further use.
+Scores of predictions as rows: for reading, and as a table for further use.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -16,7 +16,6 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from diagnostics.base.extras import require_packages
 from diagnostics.judging.judgement import TITLES
 from diagnostics.records.record_classes import STATE
 from diagnostics.scoring.prediction_file import (
@@ -28,6 +27,7 @@ from diagnostics.scoring.prediction_file import (
     matched_columns,
     prediction_table,
 )
+from diagnostics.scoring.score_rows import ScoreRow, score_figure
 from diagnostics.scoring.task import Measure, Task
 from diagnostics.scoring.tasks import TASKS, truth_of
 from diagnostics.scoring.truth import Truth
@@ -37,76 +37,7 @@ from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, counted
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-
-@dataclass(frozen=True, slots=True)
-class ScoreRow:
-    """One score.
-
-    Attributes
-    ----------
-    task, measure, records, name : str
-        What was asked, how it was measured, on which records, and whose predictions they are.
-    score : Interval
-        With 95 % limits over gearboxes.
-    chance : float
-        What an answer without knowledge reaches.
-    difference : Interval or None
-        The first predictions minus these, on the same resampled gearboxes; None for the first themselves.
-    falls : bool
-        Whether less is better.
-    """
-
-    task: str
-    measure: str
-    records: str
-    name: str
-    score: Interval
-    chance: float
-    difference: Interval | None
-    falls: bool = False
-
-
-LINE_INCHES, HEAD_INCHES, WIDTH_INCHES = 0.22, 0.75, 7.0
-
-
-def score_figure(scores: Sequence[ScoreRow]) -> Figure:
-    """Return the figure; chance is a dotted line.
-
-    Raises
-    ------
-    UsageError
-        If matplotlib is missing.
-    """
-    require_packages("a figure", "matplotlib")
-    from matplotlib.figure import Figure
-
-    blocks: dict[tuple[str, str, str], list[ScoreRow]] = {}
-    for row in scores:
-        blocks.setdefault((row.task, row.measure, row.records), []).append(row)
-    heights = [HEAD_INCHES + LINE_INCHES * len(rows) for rows in blocks.values()]
-    figure = Figure(figsize=(WIDTH_INCHES, sum(heights)), layout="constrained")
-    panels = figure.subplots(len(blocks), 1, squeeze=False, gridspec_kw={"height_ratios": heights})[:, 0]
-    for axes, (title, rows) in zip(panels, blocks.items(), strict=True):
-        _panel(axes, title, rows)
-    return figure
-
-
-def _panel(axes: Axes, title: tuple[str, str, str], rows: list[ScoreRow]) -> None:
-    for place, row in enumerate(rows):
-        colour = "C0" if row.difference is None else "0.4"
-        axes.plot([row.score.low, row.score.high], [place, place], color=colour, linewidth=1.5)
-        axes.plot(row.score.value, place, "o", color=colour, markersize=4)
-    axes.axvline(rows[0].chance, color="0.6", linestyle=":", linewidth=1.0)
-    axes.set_yticks(range(len(rows)), [TITLES.get(row.name, row.name) for row in rows], fontsize=8)
-    axes.set_ylim(len(rows) - 0.5, -0.5)
-    task, measure, records = title
-    less = ", less is better" if rows[0].falls else ""
-    axes.set_title(f"{task}: {measure}, {records}{less}", fontsize=9, loc="left")
-    axes.tick_params(axis="x", labelsize=8)
-
 
 FEWEST_GEARBOXES = 6
 """Test gearboxes from which on a difference whose limits exclude 0 is worth a word, as in the report."""
@@ -163,8 +94,6 @@ class Scores:
 
     def plot(self) -> Figure:
         """Return a figure with every score, its limits and chance; needs matplotlib."""
-        from diagnostics.scoring.score import score_figure
-
         return score_figure(self.rows)
 
     def _entry(self, row: ScoreRow) -> dict[str, object]:

@@ -133,8 +133,9 @@ DIAGNOSTICS = {
         "diagnostics.table": "indicators.classifier_table", "diagnostics.averages": "training.average_rows",
         "FeatureMatrix": "indicators.matrix", "diagnostics.windows": "loader.window_arrays",
         "Windows": "loader.window_arrays", "diagnostics.LogisticBaseline": "training.classifiers",
-        "diagnostics.BoostingBaseline": "training.classifiers", "diagnostics.score": "scoring.score",
-        "Scores": "scoring.score", "ScoreRow": "scoring.score_row", "diagnostics.open_benchmark": "scoring.benchmark",
+        "diagnostics.BoostingBaseline": "training.classifiers", "diagnostics.evaluate": "judging.alarms",
+        "JudgedDetector": "judging.alarms", "diagnostics.score": "scoring.score",
+        "Scores": "scoring.score", "ScoreRow": "scoring.score_rows", "diagnostics.open_benchmark": "scoring.benchmark",
         "diagnostics.score_benchmark": "scoring.benchmark_scores",
     },
     "## diagnostics.loader\n\nWindows of a set for PyTorch. [Load a set](../start/load_a_set.md) has an example.": {

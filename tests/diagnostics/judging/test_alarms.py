@@ -5,11 +5,16 @@ from __future__ import annotations
 from typing import ClassVar
 
 import numpy as np
+import pytest
+from sklearn.ensemble import RandomForestClassifier
+from sklearn.svm import LinearSVC
 
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.judging.alarms import BOOSTED, CHOSEN, CLASSIFIER, DESIGN, INDICATOR, judged_detectors
+from diagnostics.judging.alarms import BOOSTED, CHOSEN, CLASSIFIER, DESIGN, INDICATOR, evaluate, judged_detectors
 from diagnostics.judging.evaluation import Entry, chosen_scores, distance, inner_scores
 from diagnostics.statistics.evaluation import column_auc
+from diagnostics.training.classifiers import LogisticBaseline
+from siggen.errors import UsageError
 
 GEARBOXES, NOISE_COLUMNS = 24, 400
 STATES = ("healthy", "slight", "severe")
@@ -124,3 +129,22 @@ def test_a_way_that_is_strong_only_where_it_is_judged_is_not_chosen_there() -> N
     for row, name in enumerate(names):
         healthy = outer[name][(fold != row) & ~damaged]
         assert np.array_equal(score[fold == row], distance(outer[name][fold == row], healthy))
+
+
+def test_any_classifier_is_judged_as_those_of_a_report_are() -> None:
+    values = noise(4 * GEARBOXES, 30)
+    matrix = matrix_of(values, healthy_records=2)
+    values[:, 7] *= np.exp(np.array([STATES.index(name) for name in matrix.labels["state"]]))
+    known, own = judged_detectors(matrix, None, seed=0), LogisticBaseline((0.01,))
+    found = evaluate(own, matrix)
+    assert found.numbers()["states"] == known.alone[CLASSIFIER].numbers()["states"]
+    assert not hasattr(own, "classes_")  # copies were fitted
+    differences = LogisticBaseline((0.01,), take_logarithms=False)
+    assert evaluate(differences, matrix, beside=True).every == known.referenced[CLASSIFIER].every
+    forest = evaluate(RandomForestClassifier(50, random_state=0), matrix)  # takes no groups
+    assert forest.states["severe"].auc.low > 0.5
+    assert f"severe: AUC {forest.states['severe'].auc.value:.3f}" in str(forest)
+    with pytest.raises(UsageError, match=r"LinearSVC without predict_proba; both are needed"):
+        evaluate(LinearSVC(), matrix)
+    with pytest.raises(UsageError, match=r"allowed: 4 or more with healthy records, and as many with damaged ones$"):
+        evaluate(own, matrix.rows(matrix.groups < 3))

@@ -19,7 +19,8 @@ from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.records.recording import LABEL_NAMES
 from diagnostics.scoring.abstain import risks
 from diagnostics.scoring.prediction_file import PredictedRecords, predicted_rows, write_predictions
-from diagnostics.scoring.score import ScoreRow, Scores
+from diagnostics.scoring.score import Scores
+from diagnostics.scoring.score_rows import ScoreRow
 from diagnostics.scoring.tasks import truth_of
 from diagnostics.statistics.evaluation import Predictions
 from siggen.errors import UsageError
