@@ -15,6 +15,8 @@ __all__ = ["finite", "named", "of_kind", "one_of", "refused", "saying"]
 
 
 Kind = TypeVar("Kind")
+ARGUMENTS = {"edges_mm": "outline_mm", "bearing": "on", "floor": "dish"}
+"""Key of a damage in a file -> argument of its class, where they differ."""
 
 
 def refused(argument: str, received: object, allowed: str) -> UsageError:
@@ -101,7 +103,7 @@ def saying(arguments: Mapping[str, str]) -> Iterator[None]:
 def _argument(path: str) -> str:
     """Return a key of a section as the argument that gives it: both semi-axes are one."""
     section, _, key = path.rpartition(".")
-    return f"{section}.semi_axes_mm" if key.startswith("semi_axis_") else path
+    return f"{section}.{'semi_axes_mm' if key.startswith('semi_axis_') else ARGUMENTS.get(key, key)}".lstrip(".")
 
 
 def _said(text: str, arguments: Mapping[str, str]) -> str:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
+from numbers import Integral
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -34,11 +35,12 @@ __all__ = [
 Number = int | float
 
 
+@dataclass(frozen=True)
 class Damage:
-    """Base of the kinds of damage, and of one of your own: a class with the one method `missing_m`.
+    """Base of the kinds of damage, and of one of your own: a frozen dataclass with the one method `missing_m`.
 
-    It is a dataclass with `on` and `tooth`; `State` takes it as any other. What it does beside taking material of a
-    flank, such as softening its tooth or a force in a bearing, is not asked for yet.
+    `on` and `tooth` come from here; `State` takes it as any other. What it does beside taking material of a flank, such
+    as softening its tooth or a force in a bearing, is not asked for yet.
 
     Attributes
     ----------
@@ -97,8 +99,6 @@ class Pit(Damage):
         What its place across the face is beside `face_mm` [mm].
     """
 
-    on: str = PINION
-    tooth: int = 0
     height_mm: float | None = None
     face_mm: float | None = None
     semi_axes_mm: tuple[float, float] = (0.3, 0.2)
@@ -137,8 +137,6 @@ class Spall(Damage):
         Of its edges; 0: sharp [mm].
     """
 
-    on: str = PINION
-    tooth: int = 0
     outline_mm: Sequence[tuple[float, float]] = ()
     depth_mm: float = 0.3
     edge_radius_mm: float = 0.1
@@ -165,8 +163,6 @@ class Crack(Damage):
         Between the crack and the tooth's centre line [degrees].
     """
 
-    on: str = PINION
-    tooth: int = 0
     depth_mm: float = 1.0
     angle_deg: float = 45.0
 
@@ -194,13 +190,13 @@ class Chip(Damage):
         From the end of the face at 0 [mm]; None: the whole face.
     """
 
-    on: str = PINION
-    tooth: int = 0
     height_mm: float | None = 1.0
     width_mm: float | None = None
 
     def _entry(self, seat: DamagedPlace) -> dict[str, Any]:
-        share = None if self.width_mm is None else 1e-3 * self.width_mm / seat.pair.face_width_m
+        share, face_mm = None, 1e3 * seat.pair.face_width_m
+        if self.width_mm is not None:
+            share = finite("width_mm", self.width_mm, f"above 0 up to {face_mm:g}, the face", 1e-9, face_mm) / face_mm
         height = "whole" if self.height_mm is None else self.height_mm
         return {"kind": "chip", "gear": seat.word, "teeth": [self.tooth], "height_mm": height, "face_share": share}
 
@@ -215,6 +211,8 @@ class Wear(Damage):
         Largest depth, of all flanks of both gears [µm].
     """
 
+    on: str = field(default=PINION, init=False, repr=False)
+    tooth: int = field(default=0, init=False, repr=False)
     depth_um: float = 10.0
 
     def _entry(self, seat: DamagedPlace) -> dict[str, Any]:  # noqa: ARG002
@@ -236,6 +234,7 @@ class BearingSpall(Damage):
     """
 
     on: str = "input.bearing"
+    tooth: int = field(default=0, init=False, repr=False)
     element: str = "outer"
     length_mm: float = 2.0
     depth_mm: float = 0.1
@@ -280,33 +279,44 @@ def all_damages(damages: object) -> tuple[Damage, ...]:
     return found
 
 
-def entries(damages: Iterable[Damage], seat_of: Callable[[Damage], DamagedPlace]) -> list[dict[str, Any]]:
-    """Return damages as a file writes them; those of a kind of the user's own are left out.
+def entries(
+    damages: Iterable[Damage], seat_of: Callable[[Damage], DamagedPlace]
+) -> tuple[list[dict[str, Any]], dict[str, str]]:
+    """Return damages as a file writes them, without those of the user's own kinds, and where one is -> its argument.
 
     Raises
     ------
     UsageError
         If one is no damage, or on a tooth that there is not.
     """
-    listed: dict[str, dict[str, Any]] = {}
     found: list[dict[str, Any]] = []
-    for one in all_damages(damages):
+    listed: dict[str, dict[str, Any]] = {}
+    arguments: dict[str, str] = {}
+    for number, one in enumerate(all_damages(damages)):
         seat = seat_of(one)
         if not isinstance(one, (Wear, BearingSpall)):
-            finite("tooth", one.tooth, f"0 to {seat.gear.teeth - 1}", 0, seat.gear.teeth - 1)
+            last = seat.gear.teeth - 1
+            allowed = f"a whole number from 0 to {last}"
+            tooth = of_kind("tooth", one.tooth, Integral, allowed)  # type: ignore[type-abstract]
+            finite("tooth", tooth, allowed, 0, last)
         if one.is_shape:
             continue
-        for field in fields(one):  # type: ignore[arg-type]
-            value = getattr(one, field.name)
-            if field.default is None or type(field.default) is float:
-                finite(field.name, 0.0 if value is None else value, "a number")
-        entry = one._entry(seat)  # type: ignore[attr-defined]
+        for own in fields(one):
+            value = getattr(one, own.name)
+            if own.default is None or type(own.default) is float:
+                finite(own.name, 0.0 if value is None else value, "a number")
+        entry, place = one._entry(seat), str(len(found))  # type: ignore[attr-defined]
         if key := LISTS.get(type(one)):
-            section = listed.setdefault(seat.word, {"kind": "list"})
-            section.setdefault(key, []).append(entry)
+            if seat.word not in listed:
+                listed[seat.word] = {"kind": "list"}
+                found.append(listed[seat.word])
+            section = listed[seat.word]
+            place = f"{found.index(section)}.{key}.{len(section.setdefault(key, []))}"
+            section[key].append(entry)
         else:
             found.append(entry)
-    return [*listed.values(), *found]
+        arguments[place] = f"damages[{number}]"
+    return found, arguments
 
 
 def pits_in_layers(

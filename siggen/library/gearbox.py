@@ -6,7 +6,6 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 from siggen.checks.loading import load_config
 from siggen.columns.drivetrain import GearTrain, gear_train
@@ -185,9 +184,11 @@ class Gearbox:
             raise refused("State.name", repr(state.name), "a name that this gearbox has not yet")
         if self._design.lives:
             raise refused("more", repr(state), "no states for a gearbox that lives and fails by its set")
-        entry = self._entry(state)
+        damage, arguments = entries(state.damages, self._seat)
+        entry = {"damage": damage, "acts": not state.sham} if damage else {}
         canonical, key = self._design.canonical(), f"states.{state.name}"
-        named = {f"{key}.damage": f"damages of {state.name}", f"{key}: received the name": "State.name: received"}
+        named = {f"{key}.damage.{place}.": f"State {state.name}: {argument}." for place, argument in arguments.items()}
+        named |= {f"{key}.damage": f"damages of {state.name}", f"{key}: received the name": "State.name: received"}
         with saying({**named, key: f"state {state.name}"}):
             design = load_config({**canonical, "states": {**canonical["states"], state.name: entry}})
         made = replace(self, states=(*self.states, state), _design=design, _added=(*self._added, state))
@@ -195,14 +196,6 @@ class Gearbox:
             for problem in section.place_problems(self._seat(section.damage).pair):
                 raise UsageError(f"{type(section.damage).__name__}.{problem}")
         return made
-
-    def _entry(self, state: State) -> dict[str, Any]:
-        """Return a state as a file writes it, without damage of the user's own kinds."""
-        damage = entries(state.damages, self._seat)
-        entry: dict[str, Any] = {}
-        if damage:
-            entry |= {"damage": damage, "acts": not state.sham}
-        return entry
 
     def _shapes(self, state: State) -> tuple[ShapeFault, ...]:
         own = enumerate(one for one in state.damages if one.is_shape)

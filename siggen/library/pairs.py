@@ -245,12 +245,13 @@ def _parts(pair: GearPair, damages: Iterable[Damage] | str, law: str, loads: Any
     damages = all_damages(damages)
     for one in damages:
         one_of("on", one.on, SECTIONS)
-    with saying({"damage.": "damages."}):
-        sections = damage_sections(entries(damages, lambda one: DamagedPlace(pair, Side(one.on), one.on)))
+    written, arguments = entries(damages, lambda one: DamagedPlace(pair, Side(one.on), one.on))
+    with saying({f"damages.{place}.": f"{argument}." for place, argument in arguments.items()}):
+        sections = damage_sections(written)
         shapes = [one for one in damages if one.is_shape]
         sections += tuple(ShapeFault(gear=one.on, number=i, damage=one) for i, one in enumerate(shapes))
         problems = [
-            Problem(f"damage.{i}.{problem.path}", problem.received, problem.allowed)
+            Problem(f"damages.{i}.{problem.path}", problem.received, problem.allowed)
             for i, section in enumerate(sections)
             for problem in section.place_problems(pair)
         ]

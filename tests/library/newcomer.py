@@ -54,8 +54,6 @@ siggen.run(hoist, "c_pitted", speed_hz=16, torque_nm=50, duration_s=0.07).plot("
 # 5  a fault of one's own: one method
 @dataclass(frozen=True)
 class Dent(siggen.Damage):
-    on: str = "pinion"
-    tooth: int = 0
     depth_um: float = 20.0
 
     def missing_m(self, gear: Gear, profile_m: Array, face_m: Array) -> Array:
