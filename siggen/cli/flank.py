@@ -46,8 +46,9 @@ def flank(
     check_wanted(out, png, "flank")
     with working("drawing damage"):
         drawn, mesh = gearbox.drawn(load_config(config, overrides or ()))
-        table = flank_damage_table(drawn, state, mesh)
-        views = flank_views(drawn, state, mesh) if png is not None else []
+        of = None if gearbox.stage is None else mesh
+        table = flank_damage_table(drawn, state, of)
+        views = flank_views(drawn, state, of) if png is not None else []
     if png is not None and not views:
         raise UsageError(f"{png}: there is no damage to draw in {state or 'any state'}; leave out --png and --open")
     if out is not None:

@@ -17,9 +17,9 @@ class GearboxChoice:
     """Which gearbox."""
 
     specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0
-    stage: Annotated[str | None, typer.Option("--stage", help="Which mesh, by its name; by default the first one.")] = (
-        None
-    )
+    stage: Annotated[
+        str | None, typer.Option("--stage", help="Which mesh, by its name; by default the first one, of flanks all.")
+    ] = None
 
     def drawn(self, design: SetDesign) -> tuple[Specimen, int]:
         """Return the gearbox, and the number of the chosen mesh, 0 for the first one.

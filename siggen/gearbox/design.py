@@ -161,6 +161,11 @@ class SetDesign:
         return ("train", splits.train), ("validation", splits.validation), ("test", splits.test)
 
     @property
+    def block(self) -> int:
+        """Gearboxes, or pairs, in which the shares are met exactly."""
+        return sum(count for _, count in self.shares)
+
+    @property
     def split_by_pair(self) -> bool:
         """Whether splits share no pair of gears."""
         return self.config.splits.by == "pair"

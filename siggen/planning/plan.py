@@ -20,9 +20,6 @@ from siggen.sensors.sensor import SensorBase
 
 SPLITS = ("train", "validation", "test")
 
-BLOCK = 20
-"""Gearboxes, or pairs, in which the shares of the splits are met exactly."""
-
 SUB_BLOCK = 5
 """Specimens among which splits are shuffled; small, so that a set cut off anywhere is still nearly balanced."""
 
@@ -159,7 +156,7 @@ def record_ids_of(design: SetDesign, specimen_id: int) -> range:
 
 def split_of(design: SetDesign, specimen_id: int) -> str:
     """Return the split of a specimen; depends on seed, `splits` and the specimen, or its gear pair, alone."""
-    block, place = divmod(_owner(design, specimen_id), BLOCK)
+    block, place = divmod(_owner(design, specimen_id), design.block)
     return _splits_of_block(design.seed, design.shares, block)[place]
 
 
@@ -174,7 +171,7 @@ def _splits_of_block(seed: int, shares: tuple[tuple[str, int], ...], block: int)
     rng = generator(seed, Stream.SPLIT, block)
     labels = _even_sequence(dict(shares))
     shuffled: list[str] = []
-    for start in range(0, BLOCK, SUB_BLOCK):
+    for start in range(0, len(labels), SUB_BLOCK):
         shuffled += [labels[start + i] for i in rng.permutation(SUB_BLOCK)]
     return tuple(shuffled)
 
@@ -185,11 +182,11 @@ def _even_sequence(wanted: Mapping[str, int]) -> tuple[str, ...]:
     The shares lag by 1 in total before each place, so the largest of three lags is at least 1/3 and no split is ever
     more than 2/3 ahead: the counts come out exactly.
     """
-    given = dict.fromkeys(SPLITS, 0)
+    given, block = dict.fromkeys(SPLITS, 0), sum(wanted.values())
     sequence = []
-    for place in range(1, BLOCK + 1):
+    for place in range(1, block + 1):
         # whole numbers, so that equal lags are equal; the smaller split goes first among them
-        label = max(SPLITS, key=lambda name: (wanted[name] * place - given[name] * BLOCK, -wanted[name]))
+        label = max(SPLITS, key=lambda name: (wanted[name] * place - given[name] * block, -wanted[name]))
         given[label] += 1
         sequence.append(label)
     return tuple(sequence)
@@ -224,7 +221,7 @@ def _counts(design: SetDesign, specimens: Sequence[int]) -> tuple[int, ...]:
 
 def specimen_count(design: SetDesign, split: str) -> int:
     """Return the number of specimens of a split without listing them: all whole blocks hold as many."""
-    block = design.pairs if design.split_by_pair else BLOCK
+    block = design.pairs if design.split_by_pair else design.block
     blocks, rest = divmod(design.specimens, block)
     first = blocks * block
     own = sum(split_of(design, specimen) == split for specimen in range(block)) if blocks else 0

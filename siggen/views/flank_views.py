@@ -77,14 +77,14 @@ class FlankView:
     area_share: float
 
 
-def flank_views(specimen: Specimen, state: str | None = None, mesh: int = 0) -> list[FlankView]:
-    """Return all damaged flanks of a mesh of a specimen, state by state; of one state if it is named.
+def flank_views(specimen: Specimen, state: str | None = None, mesh: int | None = None) -> list[FlankView]:
+    """Return all damaged flanks of a specimen, state by state; of one state or mesh if it is named.
 
     Parameters
     ----------
     specimen : Specimen
     state : name of a state, or None for all
-    mesh : int, from 0 in the order of power
+    mesh : int, from 0 in the order of power, or None for all
 
     Raises
     ------
@@ -95,17 +95,21 @@ def flank_views(specimen: Specimen, state: str | None = None, mesh: int = 0) -> 
 
     Source: outlines as in paper A, section 2.1; arcs R_b psi^2/2, derived.
     """
-    teeth = MeshTeeth(specimen.law, specimen.meshes[mesh].teeth)
-    words = dict(zip(Side, (gear.word for gear in specimen.names.meshes[mesh].gears), strict=True))
+    meshes = [
+        (MeshTeeth(specimen.law, one.teeth), name)
+        for number, (one, name) in enumerate(zip(specimen.meshes, specimen.names.meshes, strict=True))
+        if mesh in (None, number)
+    ]
     return [
-        replace(view, gear=words[Side(view.gear)])
+        replace(view, gear=name.gear(Side(view.gear)).word)
         for index in _state_ids(specimen, state)
+        for teeth, name in meshes
         for view in _views(teeth.pair, specimen.states[index].name, on_teeth(teeth.damage(index)))
     ]
 
 
-def flank_damage_table(specimen: Specimen, state: str | None = None, mesh: int = 0) -> pa.Table:
-    """Return one row per damage of a mesh, state by state: the state's name, then the columns of `damage/`.
+def flank_damage_table(specimen: Specimen, state: str | None = None, mesh: int | None = None) -> pa.Table:
+    """Return one row per damage, state by state: the state's name, then the columns of `damage/`.
 
     Lengths are in mm. Parameters as in `flank_views`.
 

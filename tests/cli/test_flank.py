@@ -82,3 +82,15 @@ def test_a_picture_of_no_damage_is_refused_and_nothing_is_written(tmp_path: Path
 def test_an_unknown_state_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="allowed: healthy, slight, moderate, severe"):
         run("configs/paper_a.yaml", "--state", "grave", "--out", tmp_path / "f.csv")
+
+
+@pytest.mark.parametrize(
+    ("preset", "state", "gear"), [("two_stage", "slight", "slow_pinion"), ("planetary", "", "ring")]
+)
+def test_damage_of_every_mesh_is_shown_unless_one_is_chosen(tmp_path: Path, preset: str, state: str, gear: str) -> None:
+    out = tmp_path / "f.parquet"
+    run(preset, "--out", out, "--png", tmp_path / "f.png", *(("--state", state) if state else ()))
+    assert gear in pyarrow.parquet.read_table(out)["gear"].to_pylist()
+    if state:
+        run(preset, "--out", out, "--state", state, "--stage", "fast")
+        assert pyarrow.parquet.read_table(out).num_rows == 0

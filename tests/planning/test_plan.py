@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from siggen.config import BLOCK
 from siggen.gearbox.design import SetDesign
 from siggen.planning.plan import (
-    BLOCK,
     SPLITS,
     plan,
     planned_record,
