@@ -43,12 +43,6 @@ class Rubbing(Section):
 class Bearings(Section):
     """Waviness of rolling bearings and the passing of balls: displacements in series with each bearing's spring."""
 
-    velocity_um_s: Annotated[Number, Within(least=0, most=100_000), Usual(1, 3000)] = Field(
-        default=LogUniform(low=20.0, high=200.0),
-        description="rms velocity of the outer ring at 1800 turns a minute, drawn for each band of ISO 15242: 50, 300, "
-        "1800, 10000 Hz (memory)",
-    )
-
 
 class Machines(Section):
     """Noise of the motor and of what is driven; each presses on the base, or on its shaft without one."""

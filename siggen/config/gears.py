@@ -42,9 +42,6 @@ class ToothForm(Section):
     youngs_modulus_gpa: Annotated[Number, Within(above=0)] = Field(
         default=206.0, description="Young's modulus of both gears"
     )
-    poisson_ratio: Annotated[Number, Within(least=0, below=0.5), Usual(0.15, 0.45)] = Field(
-        default=0.3, description="Poisson's ratio"
-    )
     centre_distance_mm: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="null: the one at which the profile shifts mesh without backlash"
     )

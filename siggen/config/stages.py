@@ -31,7 +31,7 @@ class Stage(Section):
 
 
 OF_BOTH_MESHES = (
-    "module_mm", "pressure_angle_deg", "youngs_modulus_gpa", "poisson_ratio",
+    "module_mm", "pressure_angle_deg", "youngs_modulus_gpa",
 )  # fmt: skip
 """Numbers of a gear that the section of its mesh holds; both meshes of an idler have them alike."""
 

@@ -13,7 +13,6 @@ from typing import TypeVar
 from siggen.config import Config
 from siggen.dynamics.structure.gear_stage import Base
 from siggen.gearbox.background_numbers import (
-    BANDS,
     BaseNumbers,
     BearingNumbers,
     BurstNumbers,
@@ -137,15 +136,14 @@ def drawn_background(config: Config, specimen_id: int) -> DrawnBackground | None
         return None
     uniform = named_uniforms(config.seed, Stream.BACKGROUND, specimen_id)
 
-    def drawn(numbers: type[SomeSection], part: Section, path: str, **more: object) -> SomeSection:
-        return draw(numbers.model_construct(**{**dict(part), **more}), uniform, f"background.{path}")
+    def drawn(numbers: type[SomeSection], part: Section, path: str) -> SomeSection:
+        return draw(numbers.model_construct(**dict(part)), uniform, f"background.{path}")
 
     def levels(kind: type[T], numbers: type[Section], part: Section | None, path: str, **more: object) -> T | None:
         return None if part is None else kind(**in_si(drawn(numbers, part, path)), **more)
 
     rubbing, bearings, shafts = section.rubbing, section.bearings, section.shafts
     bursts = levels(BurstLevels, BurstNumbers, None if rubbing is None else rubbing.bursts, "rubbing.bursts")
-    bands = {} if bearings is None else dict.fromkeys(BANDS, bearings.velocity_um_s)
     meshes = {"second_stage": section.second_stage, "auxiliary_drive": section.auxiliary_drive}
     turning = config.names.shafts
     turned = {"auxiliary_drive": "auxiliary_drive", **{name: f"machines.{name}" for name in MACHINES}}
@@ -153,7 +151,7 @@ def drawn_background(config: Config, specimen_id: int) -> DrawnBackground | None
         base=None if section.base is None else _base(drawn(BaseNumbers, section.base, "base")),
         rubbing=levels(RubbingLevels, RubbingNumbers, rubbing, "rubbing", bursts=bursts),
         bearings={
-            shaft.inner: BearingLevels(**in_si(drawn(BearingNumbers, bearings, f"bearings.{shaft.word}", **bands)))
+            shaft.inner: BearingLevels(**in_si(drawn(BearingNumbers, bearings, f"bearings.{shaft.word}")))
             for shaft in turning
             if bearings is not None
         },

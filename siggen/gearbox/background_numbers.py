@@ -7,12 +7,10 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from siggen.config import BaseSection, Bursts, ForeignMesh, Machines, Rubbing, ShaftLines
+from siggen.config import BaseSection, Bearings, Bursts, ForeignMesh, Machines, Rubbing, ShaftLines
 from siggen.keys.distributions import LogUniform, Uniform
 from siggen.keys.number import Number, Within
-from siggen.keys.section import Section
 
-BANDS = ("low_um_s", "middle_um_s", "high_um_s")
 Drawn = Annotated[Number, Within()]
 
 
@@ -58,17 +56,20 @@ class RubbingNumbers(Rubbing):
     replayed_share: Drawn = LogUniform(low=0.01, high=0.08)
 
 
-class BearingNumbers(Section):
-    """Of both bearings of a shaft: rms velocities of the bands, and how the shaft modulates the noise (assumed).
+class BearingNumbers(Bearings):
+    """Of both bearings of a shaft: velocities of the bands (memory), and how the shaft modulates the noise (assumed).
+
+    Velocities are rms values of the outer ring at 1800 turns a minute, in the bands of ISO 15242: 50, 300, 1800, 10000
+    Hz.
 
     Balls that pass the outer ring `ball_pass_order` times a turn (derived) move the shaft by `compliance_um` (assumed);
     bearings with a `geometry` have their own. The cage lags by a share that a record draws (assumed: 0.5 to 2 %).
     The level is as of the rubbing, one course per shaft (measured).
     """
 
-    low_um_s: Drawn
-    middle_um_s: Drawn
-    high_um_s: Drawn
+    low_um_s: Drawn = LogUniform(low=20.0, high=200.0)
+    middle_um_s: Drawn = LogUniform(low=20.0, high=200.0)
+    high_um_s: Drawn = LogUniform(low=20.0, high=200.0)
     compliance_um: Drawn = LogUniform(low=0.02, high=0.3)
     ball_pass_order: Drawn = Uniform(low=3.0, high=5.5)
     shaft_depth: Drawn = LogUniform(low=0.03, high=0.4)

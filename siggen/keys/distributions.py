@@ -187,7 +187,8 @@ Distribution: TypeAlias = Uniform | LogUniform | Normal | Choice
 class Changed:
     """`times` · a number + `add`: the same uniform gives the value of the same rank (no file can hold one).
 
-    A gearbox has its factor and shift drawn; checks of a set see them as distributions, at the same rank.
+    A gearbox has its factor and shift drawn by `Change.drawn`; checks of a set see them as distributions, of the same
+    rank as the number.
     """
 
     number: float | Distribution

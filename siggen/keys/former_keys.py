@@ -14,6 +14,8 @@ NOW = {
     ".grows_from": "write grows: NAME of the milder state; a state without it begins anew",
     ".sham": "write acts: false",
     "stages": "write machine: with shafts, gears and meshes of your own names, in place of gears and stages",
+    ".poisson_ratio": "leave it out: it is 0.3, that of steel and cast iron",
+    ".velocity_um_s": "leave it out: bearings draw {log: [20, 200]} for each band of ISO 15242",
     "variation.speed.rated_torque_nm": "leave it out: the slip belongs to dynamics.rated_torque_nm",
     "dynamics.shafts.pinion": "write dynamics.shafts.driver",
     "dynamics.shafts.gear": "write dynamics.shafts.driven",

@@ -11,6 +11,7 @@ from siggen.checks.loading import load_config
 from siggen.checks.shaft_notes import shaft_notes
 from siggen.dynamics.structure.structure import on_back_flanks
 from siggen.errors import ConfigError
+from siggen.gearbox.background_numbers import BearingNumbers
 from siggen.gearbox.design import SetDesign
 from siggen.gearbox.specimen import OperatingPoint
 from siggen.specimen.bearing_spalls import mean_force_n
@@ -18,6 +19,7 @@ from siggen.specimen.loaded_bearings import BEARINGS, shaft_load_n
 from siggen.specimen.structure import specimen_bearings, structure
 from tests.config.minimal import by_name, config, minimal
 from tests.simulated import simulate
+from tests.specimen.fixed_numbers import fix
 
 CLEARANCE = "dynamics.pinion.bearing.geometry.clearance_um"
 STIFFNESS = "dynamics.gear.bearing.stiffness_n_per_m"
@@ -169,9 +171,11 @@ def test_a_spall_of_such_a_bearing_pushes_under_its_load_and_clearance() -> None
     assert np.std(pushed[10.0] - pushed[30.0]) > 0.05 * np.std(pushed[10.0])
 
 
-def test_balls_that_pass_a_loaded_bearing_are_heard_at_their_order_though_nothing_is_drawn_for_them() -> None:
+def test_balls_that_pass_a_loaded_bearing_are_heard_at_their_order_though_nothing_is_drawn_for_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """What a background of still bearings adds is lines of BPFO less its slip, larger with more clearance."""
-    still = {"velocity_um_s": 0.0}
+    fix(monkeypatch, BearingNumbers, low_um_s=0.0, middle_um_s=0.0, high_um_s=0.0)
     size = {}
     for um in (0.0, 40.0):
         short: dict[str, Any] = {
@@ -180,7 +184,7 @@ def test_balls_that_pass_a_loaded_bearing_are_heard_at_their_order_though_nothin
             "dynamics__mesh": {"law": "linear"},
         }
         short["sensors"] = {"bearing": {"bits": None, "range_m_s2": 1e6}}  # no steps of a converter
-        plain, heard = made(um, **short), made(um, **short, background__bearings=still)
+        plain, heard = made(um, **short), made(um, **short, background__bearings={})
         added = signal(heard, 0) - signal(plain, 0)
         power = np.abs(np.fft.rfft(added * np.hanning(added.size))) ** 2
         hz = 2.0 * np.arange(power.size)
