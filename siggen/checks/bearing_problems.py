@@ -14,6 +14,8 @@ from siggen.gearbox.possible import PossibleGearbox
 from siggen.keys.drawing import corners
 from siggen.names import Side
 
+OF_BALLS = (".geometry.", ".sizing.torque_factor", ".sizing.shear_n_per_mm2", ".sizing.series")
+"""What balls follow from."""
 STIFFNESS = "stiffness_n_per_m"
 """Key of a `bearing` that its `geometry` replaces."""
 
@@ -21,7 +23,9 @@ STIFFNESS = "stiffness_n_per_m"
 def bearing_problems(gearbox: PossibleGearbox) -> Iterator[Problem]:
     """Yield the problems of both shafts at the bounds of all numbers."""
     for role in Side:
-        given = [one for one in corners(partial(gearbox.ball, role)) if one is not None]
+        spalls = [one for _, one in gearbox.meshes[0].damages if isinstance(one, BearingSpalls)]
+        of_balls = OF_BALLS if spalls else (".geometry.",)  # nothing else asks what sizes gearboxes draw
+        given = [one for one in corners(partial(gearbox.ball, role), *of_balls) if one is not None]
         crowded = [one for one in given if one.ball_diameter_m >= one.room_m]
         if crowded:
             received = f"{crowded[0].balls} balls of {1e3 * crowded[0].ball_diameter_m:g} mm"

@@ -114,7 +114,15 @@ def _of_pairs(gearbox: PossibleGearbox) -> Iterator[str]:
 def quantities(gearbox: PossibleGearbox) -> Iterator[UsualQuantity]:
     """Yield what is compared."""
     compared = _SizesCompared(gearbox)
-    for group in (compared.gears, compared.load, compared.rotors, compared.ends, compared.housing, compared.others):
+    for group in (
+        compared.gears,
+        compared.load,
+        compared.rotors,
+        compared.ends,
+        compared.rated,
+        compared.housing,
+        compared.others,
+    ):
         yield from group()
 
 
@@ -196,6 +204,8 @@ class _SizesCompared:
     def rotors(self) -> Iterator[UsualQuantity]:
         """Yield masses, and bearings, of which a planetary set has none."""
         number, torque = self.gearbox.number, self.gearbox.largest_torque_nm
+        dynamics = self.gearbox.config.dynamics
+        from_catalogue = [f"dynamics.{side}" for side in Side if not getattr(dynamics, side).bearing.stiffness_n_per_m]
         for at, gear, pair, of_torque in self._rotors():
             hint = "null takes the disc; a value left from other teeth?"
             what, disc = "over that of a steel disc", disc_mass_kg(gear, pair.face_width_m)
@@ -203,9 +213,11 @@ class _SizesCompared:
             disc = disc_inertia_kg_m2(gear, pair.face_width_m)
             yield from self.of(f"{at}.inertia_kg_m2", f"inertia {what}", (0.3, 5.0), hint, disc)
             stiffness, damping = f"{at}.bearing.stiffness_n_per_m", f"{at}.bearing.damping_n_s_per_m"
-            if torque > 0.0 and not number("planetary"):
+            if torque > 0.0 and not number("planetary") and at not in from_catalogue:
                 what, gives_um = "gives way at full load by [µm]", 1e6 * torque * of_torque
                 yield self.under(stiffness, what, (0.3, 1000.0), "is it in N/m, not N/mm?", gives_um)
+            if number(damping) is None:  # damping_time_s is that ratio
+                continue
             (low, high), (least, most) = bounds(number(damping)), bounds(number(stiffness))
             if high > 0.0:
                 ratios = max(low, 1e-3 * high) / least, high / most
@@ -255,6 +267,13 @@ class _SizesCompared:
         else:
             what, centre_mm = "thickness over the centre distance", 1e3 * self.pair.working_centre_distance_m
             yield from self.of("housing.wall_mm", what, (0.01, 0.4), "is it in mm?", centre_mm)
+
+    def rated(self) -> Iterator[UsualQuantity]:
+        """Yield the rated speed over that of the operating points."""
+        most_hz = max((bounds(point.speed_hz)[1] for point in self.gearbox.config.operating_points), default=0.0)
+        if most_hz > 0.0:
+            what = "speed over the highest of the operating points"
+            yield from self.of("dynamics.rated_speed_hz", what, (0.1, 20.0), "is it in Hz?", most_hz)
 
     def others(self) -> Iterator[UsualQuantity]:
         """Yield what belongs to the largest torque, clearances of teeth, and what records hold."""

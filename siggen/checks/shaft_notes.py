@@ -33,7 +33,7 @@ def shaft_notes(gearbox: PossibleGearbox) -> Iterator[str]:
                 f"{1e6 * tilts.largest_rad:.0f} urad; at {1e6 * tilts.limit_rad:.0f} an end meets the other flank: "
                 "such gearboxes end as outside_model; stiffer bearings, or a gear_position nearer to 0.5, prevent it"
             )
-    if any(getattr(dynamics, role).bearing.geometry is not None for role in Side):
+    if any(getattr(gearbox.dynamics, role).bearing.geometry is not None for role in Side):
         yield from _bearing_notes(gearbox)
 
 

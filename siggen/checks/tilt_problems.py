@@ -36,6 +36,8 @@ from siggen.specimen.loaded_bearings import BEARINGS, on_loaded_bearing, shaft_l
 
 PLACES = (0.125, 0.375, 0.625, 0.875)
 """Equally likely places of a gear on its shaft."""
+OF_BEARINGS = (".stiffness_n_per_m.", ".geometry.", ".sizing.series")
+"""What the stiffness of bearings follows from."""
 LOAD_RESERVE = 3.0
 """Of the force up to which contacts are tabulated over that of the largest torque."""
 
@@ -80,7 +82,7 @@ def flank_tilts(gearbox: PossibleGearbox, pair: GearPair) -> FlankTilts:
     ends = []
     for side in Side:
         shafts = corners(gearbox.shaft(side, pair))
-        bearings = corners(partial(_bearing, gearbox, side, pair), ".stiffness_n_per_m.", ".geometry.")
+        bearings = corners(partial(_bearing, gearbox, side, pair), *OF_BEARINGS)
         tilts = [static_tilt_rad(*one, pair, side, torque_nm) for one in product(shafts, bearings)]
         ends.append((min(tilts), max(tilts)))
     low, high = (sum(each) for each in zip(*ends, strict=True))

@@ -17,6 +17,7 @@ from siggen.config.dynamics import (
     RotorSection,
     Shafts,
     ShaftSection,
+    Sizing,
     UnbalanceSection,
     by_reference,
 )
@@ -68,6 +69,7 @@ __all__ = [
     "ShaftLines",
     "ShaftSection",
     "Shafts",
+    "Sizing",
     "SpeedVariation",
     "Splits",
     "Stage",

@@ -39,6 +39,8 @@ WORDS = ("oil",)
 """Keys that hold a word and may be changed; all others hold numbers."""
 FIXED = ("position_mm", "span_mm", "integration_tolerance", "steps_per_sample")
 """Numbers that say where a channel is or how it is computed."""
+MADE = "dynamics.sizing."
+"""How a gearbox was made, which no state changes."""
 HOW = ("times", "add")
 NUMBERS = (float, Each, *DRAWN)
 ALLOWED = "a number, a range such as [1, 2] or {log: [1, 2]}, {times: x} or {add: x}"
@@ -131,6 +133,8 @@ def changed_sections(sections: Mapping[str, Any], changes: Sequence[Change]) -> 
             near = nearest(one.path, _paths(sections)) if name not in sections else ""
             allowed = f"allowed: keys below {', '.join(known)}; all else is the same in all states{near}"
             raise _refused(one, former_key(name) or allowed)
+        if one.path.startswith(MADE):
+            raise _refused(one, "allowed: sizes that follow from it, such as those of dynamics.pinion.bearing.geometry")
         if machine is not None and name == "dynamics" and below[0] in tuple(Side):
             raise _refused(one, f"allowed with a machine: keys below {SHAFTS}")
         found[name] = _replaced({**sections, **found}.get(name), below, one)

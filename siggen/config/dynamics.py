@@ -4,27 +4,36 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from siggen.config.mesh import Friction, MeshSection
+from siggen.errors import Problem
 from siggen.faults.ball_geometry import BallGeometry
+from siggen.keys.distributions import Choice, LogUniform, Uniform
 from siggen.keys.number import Each, Number, Within
+from siggen.keys.problems import refusal
 from siggen.keys.section import Section, Whole
 from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
 from siggen.names import SHAFT_OF
 
+SERIES = (60, 62, 63)
+"""Of deep groove ball bearings in catalogues: light, medium, heavy."""
+SIZED_TEXT = "null: by rated_torque_nm and sizing"
+
 
 class ShaftSection(Section):
     """A round steel shaft of one diameter on two bearings, with its gear between them."""
 
-    bearing_span_mm: Annotated[Number, Within(above=0, most=2000)] = Field(
-        default=100.0, description="distance of the bearings"
+    bearing_span_mm: Annotated[Number | None, Within(above=0, most=2000, words=(None,))] = Field(
+        default=100.0, description="distance of the bearings; " + SIZED_TEXT
     )
     gear_position: Annotated[Number, Within(above=0, below=1)] = Field(
         default=0.5, description="middle of the gear from one bearing, as a share of the span"
     )
-    diameter_mm: Annotated[Number, Within(least=5)] = Field(default=25.0, description="of the shaft")
+    diameter_mm: Annotated[Number | None, Within(least=5, words=(None,))] = Field(
+        default=25.0, description="of the shaft; " + SIZED_TEXT
+    )
 
 
 class Shafts(Section):
@@ -51,20 +60,34 @@ class UnbalanceSection(Section):
 MACHINE = "of the machine that drives, or is driven"
 RATED = "rated_torque_nm"
 """Key from which the sizes follow that a file leaves out."""
+RATED_LOAD = (
+    "of the first shaft: masses, inertias, bearings, couplings, and shafts if there are any, follow from it where they "
+    "are not given, by the rules of `siggen init`, and take the place of those of a file that is extended; speed null: "
+    "the highest of the operating points; torque null: their own defaults"
+)
+RATED_SPEED = "rated_speed_hz"
+RATED_SPEED_TEXT = AllowedText("a number above 0 up to 1e+05, or null")
 RATED_TEXT = AllowedText("a number above 0 up to 1e+06, or null")
 
 
-ACROSS = "across the shaft; {each: [horizontal, vertical]} gives one for each direction"
+ACROSS = (
+    "stiffness and damping across the shaft, 2 to 7 % of critical for shafts of 3 to 0.3 kg; {each: [horizontal, "
+    "vertical]} gives one for each direction; damping_time_s: damping over stiffness at any load, in place of the other "
+    f"one; {SIZED_TEXT}"
+)
 
 
 class BearingSection(Section):
     """Both bearings of a shaft together; each direction draws its own number."""
 
-    stiffness_n_per_m: Annotated[Number | Each, Within(above=0, each=True, count=2)] = Field(
+    stiffness_n_per_m: Annotated[Number | Each | None, Within(above=0, each=True, count=2, words=(None,))] = Field(
         default=2e8, description=ACROSS
     )
-    damping_n_s_per_m: Annotated[Number | Each, Within(least=0, each=True, count=2)] = Field(
-        default=1000.0, description="the same; 2 to 7 % of critical for shafts of 3 to 0.3 kg"
+    damping_n_s_per_m: Annotated[Number | Each | None, Within(least=0, each=True, count=2, words=(None,))] = Field(
+        default=1000.0, description=ACROSS
+    )
+    damping_time_s: Annotated[Number | None, Within(least=0, words=(None,)), Usual(5e-7, 2e-4)] = Field(
+        default=None, description=ACROSS
     )
     axial_stiffness_n_per_m: Annotated[Number, Within(above=0), Usual(1e06, 2e09)] = Field(
         default=1e8, description="along the shaft, where helical teeth push"
@@ -75,12 +98,19 @@ class BearingSection(Section):
         "bearings, whose stiffness follows load and clearance",
     )
 
+    @property
+    def nulls(self) -> list[str]:
+        """Keys that leave a number to a rated torque."""
+        found = ["stiffness_n_per_m"] if self.stiffness_n_per_m is None else []
+        return [*found, "damping_n_s_per_m"] if self.damping_n_s_per_m is self.damping_time_s is None else found
+
 
 class RotorSection(Section):
     """Mass of a gear, what makes it wobble, and the bearings of its shaft (x along the centre line, y vertical)."""
 
     mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
-        default=None, description="null: a solid steel disc of the pitch circle with its bore"
+        default=None,
+        description="null: a solid steel disc of the pitch circle with its bore; with rated_torque_nm, its shaft too",
     )
     inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="about the shaft; null: of the same disc"
@@ -91,6 +121,52 @@ class RotorSection(Section):
         "allows; needs manufacture",
     )
     bearing: BearingSection = Field(default=BearingSection(), description="what its shaft turns in")
+
+
+CHOSEN = (
+    "torque that shafts are made for over rated_torque_nm; shear by it that their ends bear; their length over the "
+    "distance of bearings; series of ball bearings, another one where its balls would not last 20,000 h or not stand "
+    "side by side, and rollers where none does; radial play of each in running, below 0 a preload; damping over "
+    "stiffness"
+)
+
+
+class Sizing(Section):
+    """What makers choose, drawn for every gearbox whose sizes follow from its rated torque (assumed).
+
+    Design torque: application factors of ISO 6336-6 for uniform and for shocking loads are 1 to 1.75. Shear: usual of
+    shafts that bend too. Damping over stiffness: 0.25e-5 to 2.5e-5 s of rolling bearings (Kraemer, Dynamics of rotors
+    and foundations, 1993; from memory).
+    """
+
+    torque_factor: Annotated[Number, Within(least=0.5, most=5)] = Field(
+        default=Uniform(low=1.0, high=1.75), description=CHOSEN
+    )
+    shear_n_per_mm2: Annotated[Number, Within(least=2, most=200)] = Field(
+        default=Uniform(low=12.0, high=25.0), description=CHOSEN
+    )
+    length_factor: Annotated[Number, Within(least=1, most=5)] = Field(
+        default=Uniform(low=1.0, high=1.4), description=CHOSEN
+    )
+    series: Annotated[Number, Within(least=60, most=63)] = Field(
+        default=Choice(values=(60.0, 62.0, 63.0)),
+        description=CHOSEN,
+    )
+    clearance_um: Annotated[Number, Within(least=-100, most=1000), Usual(-20, 200)] = Field(
+        default=Uniform(low=-5.0, high=15.0), description=CHOSEN
+    )
+    damping_time_s: Annotated[Number, Within(least=0), Usual(5e-7, 2e-4)] = Field(
+        default=LogUniform(low=2.5e-6, high=2.5e-5), description=CHOSEN
+    )
+
+    @model_validator(mode="after")
+    def _series_of_a_catalogue(self) -> Sizing:
+        values = self.series.values if isinstance(self.series, Choice) else (self.series,)
+        if wrong := [value for value in values if value not in SERIES]:
+            shown = f"{wrong[0]:g}" if isinstance(wrong[0], float) else str(wrong[0])
+            allowed = f"allowed: {', '.join(map(str, SERIES))}, or one_of some"
+            raise refusal([Problem("series", shown, allowed)])
+        return self
 
 
 class CouplingSection(Section):
@@ -141,10 +217,29 @@ class Dynamics(Section):
     )
     rated_torque_nm: Annotated[float | None, Field(gt=0, le=1e6), RATED_TEXT] = Field(
         default=None,
-        description="of the first shaft: masses, inertias, bearings, couplings, and shafts if there are any, follow "
-        "from it where they are not given, by the rules of `siggen init`, and take the place of those of a file that "
-        "is extended; null: their own defaults",
+        description=RATED_LOAD,
     )
+    rated_speed_hz: Annotated[float | None, Field(gt=0, le=1e5), RATED_SPEED_TEXT] = Field(
+        default=None,
+        description=RATED_LOAD,
+    )
+    sizing: Sizing = Field(default=Sizing(), description="how each gearbox is made for its rated torque")
+
+    @model_validator(mode="after")
+    def _nulls_follow_from_something(self) -> Dynamics:
+        if None not in (self.rated_torque_nm, self.rated_speed_hz):
+            return self
+        rotors = {"pinion": self.pinion, "gear": self.gear}
+        paths = [f"{wheel}.bearing.{key}" for wheel, rotor in rotors.items() for key in rotor.bearing.nulls]
+        if self.shafts is not None:
+            shafts = {name: self.shafts.of(wheel) for wheel, name in SHAFT_OF.items()}
+            lengths = ("bearing_span_mm", "diameter_mm")
+            paths += [f"shafts.{n}.{key}" for n, one in shafts.items() for key in lengths if getattr(one, key) is None]
+        if paths:
+            raise refusal(
+                [Problem(path, "null", f"allowed: a number, or null beside dynamics.{RATED}") for path in paths]
+            )
+        return self
 
     @property
     def method(self) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from siggen.config.dynamics import RATED
+from siggen.config.dynamics import RATED, RATED_SPEED
 from siggen.config.presets import config_file
 from siggen.errors import ConfigError, Problem, UsageError
 from siggen.keys.data_file import is_file
@@ -18,7 +18,7 @@ from siggen.names import SHAFT_OF
 EXTENDS = "extends"
 REPLACED = ("gears", "planetary")
 """Sections that a machine takes the place of."""
-REPLACED_OF_DYNAMICS = ("pinion", "gear", "shafts")
+REPLACED_OF_DYNAMICS = ("pinion", "gear", "shafts", RATED, RATED_SPEED)
 SIZED: Mapping[str, Any] = {
     **{
         gear: {
@@ -27,7 +27,7 @@ SIZED: Mapping[str, Any] = {
         }
         for gear in ("pinion", "gear")
     },
-    **dict.fromkeys(("motor_inertia_kg_m2", "load_inertia_kg_m2", "input_coupling", "output_coupling")),
+    **dict.fromkeys((RATED_SPEED, "motor_inertia_kg_m2", "load_inertia_kg_m2", "input_coupling", "output_coupling")),
     "shafts": dict.fromkeys(SHAFT_OF.values(), dict.fromkeys(("bearing_span_mm", "diameter_mm"))),
 }
 """Keys of `dynamics` that a rated torque takes the place of; None: a key, else those of a section."""

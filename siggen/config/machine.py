@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal, TypeAlias
 
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict, Field, model_validator
 
 from siggen.config.dynamics import RotorSection
 from siggen.config.gears import ToothForm, Wheel
+from siggen.errors import Problem
 from siggen.keys.by_name import NamedParts, without_key_field
 from siggen.keys.number import Number, Within
+from siggen.keys.problems import refusal
 from siggen.keys.section import Section
 from siggen.keys.user_name import PartName
 from siggen.keys.usual import Usual
@@ -38,6 +40,13 @@ class MachineShaft(NamedPart, RotorSection):
         description="distance of the bearings of a shaft with two gears, which stand at its thirds; idler: one gear in "
         "two meshes; null: twice both face widths (assumed)",
     )
+
+    @model_validator(mode="after")
+    def _bearings_are_given(self) -> MachineShaft:
+        if nulls := self.bearing.nulls:
+            allowed = "allowed: a number; null follows from a rated torque, which a machine does not read"
+            raise refusal([Problem(f"bearing.{key}", "null", allowed) for key in nulls])
+        return self
 
 
 class MachineGear(NamedPart, Wheel):

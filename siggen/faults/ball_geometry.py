@@ -20,8 +20,9 @@ class BallGeometry(Section):
     balls: Annotated[Whole, Field(ge=3, le=100)] = Field(default=9, description="number of balls")
     ball_diameter_mm: Annotated[Number, Within(above=0), Usual(0.5, 150)] = Field(default=7.94, description=DIAMETERS)
     pitch_diameter_mm: Annotated[Number, Within(above=0), Usual(3, 1500)] = Field(default=39.04, description=DIAMETERS)
-    clearance_um: Annotated[Number, Within(least=0, most=1000), Usual(0.5, 200)] = Field(
-        default=10.0, description="radial play from side to side in running; it narrows the zone of load"
+    clearance_um: Annotated[Number, Within(least=-100, most=1000), Usual(-20, 200)] = Field(
+        default=10.0,
+        description="radial play from side to side in running; it narrows the zone of load; below 0: preload",
     )
 
     def bearing(self) -> BallBearing:

@@ -17,9 +17,13 @@ from siggen.config.oil import oils_of
 from siggen.faults.fault import Fault
 from siggen.gearbox.lived import Lived, lived, lived_states
 from siggen.keys.distributions import Choice
+from siggen.keys.drawing import draw
+from siggen.keys.number import at
 from siggen.keys.teeth import drawn_teeth, most_teeth
 from siggen.names import EITHER, Names, Side
+from siggen.rig.bearings import BearingSize
 from siggen.rig.carried_over import carried_over
+from siggen.rig.sizes import bearings_of, is_sized, sized
 from siggen.seeding import Stream, generator, named_uniforms
 
 
@@ -82,18 +86,44 @@ def _order(seed: int, count: int, block: int) -> tuple[int, ...]:
 
 
 def with_drawn_parts(config: Config, specimen_id: int) -> Config:
-    """Return a configuration in which one gearbox's damaged gear, number of teeth and oil are given."""
+    """Return a configuration in which one gearbox's damaged gear, number of teeth, oil and sizes are given."""
     if not has_drawn_parts(config):
-        return config
+        return with_drawn_sizes(config, specimen_id)
     teeth = named_uniforms(config.seed, Stream.DAMAGED_TEETH, specimen_id)
     oils = oils_of(config.dynamics.friction.oil)
     supports = named_uniforms(config.seed, Stream.SUPPORTS, specimen_id)
     oil = oils[int(supports("dynamics.friction.oil") * len(oils))]
-    return _with_oil(_with_damage(config, _drawn_hit(teeth, config.names)), oil)
+    found = _with_oil(_with_damage(config, _drawn_hit(teeth, config.names)), oil)
+    return with_drawn_sizes(found, specimen_id)
+
+
+def with_drawn_sizes(config: Config, specimen_id: int) -> Config:
+    """Return a configuration with the sizes of one gearbox that follow from its rated torque."""
+    dynamics = config.dynamics
+    if is_sized(dynamics):
+        return config
+    gears = draw(config.gears, named_uniforms(config.seed, Stream.GEARS, specimen_id), "gears")
+    supports = named_uniforms(config.seed, Stream.SUPPORTS, specimen_id)
+    return config.model_copy(update={"dynamics": sized(dynamics, gears, supports)})
+
+
+def drawn_bearings(config: Config, specimen_id: int) -> dict[Side, tuple[BearingSize, float]]:
+    """Return the bearings that a gearbox draws from the catalogue, and their clearance [um]; none where given."""
+    index = pair_of(config, specimen_id)
+    own = config if index is None else pair_config(config, index)
+    gears = draw(own.gears, named_uniforms(own.seed, Stream.GEARS, specimen_id), "gears")
+    supports = named_uniforms(own.seed, Stream.SUPPORTS, specimen_id)
+    found = bearings_of(own.dynamics, gears, supports)
+    play = own.dynamics.sizing.clearance_um
+    return {
+        side: (one, at(play, supports(f"dynamics.{side}.bearing.geometry.clearance_um")))
+        for side, one in zip(Side, found, strict=True)
+        if one is not None
+    }
 
 
 def has_drawn_parts(config: Config) -> bool:
-    """Tell whether gearboxes differ in what `with_drawn_parts` gives."""
+    """Tell whether gearboxes differ in damage or oil that `with_drawn_parts` gives."""
     return isinstance(config.dynamics.friction.oil, tuple) or any(
         config.names.flanks.get(one.hit_gear, ("", ""))[1] == EITHER or isinstance(getattr(one, "teeth", None), Choice)
         for state in config.states

@@ -9,9 +9,9 @@ from typing import TypeAlias
 import pyarrow as pa
 
 from siggen.config import Config
-from siggen.gearbox.configured import pair_of
+from siggen.gearbox.configured import drawn_bearings, pair_of
 from siggen.gears.geometry.gear_pair import GearPair
-from siggen.keys.column import MILLIMETRE, Column, Role, in_role, list_of
+from siggen.keys.column import MICROMETRE, MILLIMETRE, Column, Role, in_role, list_of
 from siggen.keys.number import constant
 from siggen.sensors.sensor import SensorBase
 
@@ -41,6 +41,8 @@ PAIR = in_role(
     section="gears",
 )
 OIL = Column("oil", pa.string(), "", "oil of the gearbox", Role.CONDITION, "dynamics")
+BEARING = Column("", pa.string(), "", "", Role.CONDITION, "dynamics")
+CLEARANCE = Column("", pa.float64(), MICROMETRE, "", Role.CONDITION, "dynamics")
 PLACE = Column("", pa.float64(), MILLIMETRE, "", Role.CONDITION, "sensors")
 
 
@@ -70,7 +72,7 @@ def _words(config: Config, state_id: int | None) -> Iterator[str]:
 
 
 def gearbox_labels(config: Config, specimen_id: int, pair: GearPair, oil: str, sensors: Sequence[SensorBase]) -> Labels:
-    """Return what a gearbox of a set draws as a whole: pair, oil, places of its sensors; nothing that all share."""
+    """Return what a gearbox of a set draws as a whole: pair, oil, bearings, places of sensors; nothing all share."""
     labels = dict[Column, object]()
     if (index := pair_of(config, specimen_id)) is not None:
         ratio = (pair.contact_end_m - pair.contact_start_m) / pair.base_pitch_m
@@ -78,6 +80,13 @@ def gearbox_labels(config: Config, specimen_id: int, pair: GearPair, oil: str, s
         labels |= dict(zip(PAIR, (index, *(1e3 * length for length in lengths_m), ratio), strict=True))
     if isinstance(config.dynamics.friction.oil, tuple):
         labels[OIL] = oil
+    for side, (bearing, clearance_um) in drawn_bearings(config, specimen_id).items():
+        word = config.names.first.gear(side).word
+        meaning = f"both bearings of the shaft of {word}, by their name in catalogues"
+        labels[replace(BEARING, name=f"bearing_{word}", meaning=meaning)] = bearing.designation
+        meaning = "radial play of each of them in running; below 0: preload; 0 of rollers, which have none here"
+        play_um = 0.0 if bearing.rollers else clearance_um
+        labels[replace(CLEARANCE, name=f"bearing_clearance_{word}_um", meaning=meaning)] = play_um
     for law, sensor in zip(config.sensors, sensors, strict=True):
         for axis, number in enumerate(law.place_on_casing_mm):
             if config.gears.pairs or not isinstance(number, float):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from siggen.config import Config, PlateHousing, Shafts
+from siggen.config import Config, Dynamics, PlateHousing, Shafts
 from siggen.config.changes import SECTIONS, changed_sections
 from siggen.config.config import rated_nm
 from siggen.config.consistency import consistency_problems
@@ -31,6 +31,7 @@ from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.keys.drawing import Uniforms, corners, draw
 from siggen.keys.number import HIGH, MIDDLE, at, bounds
 from siggen.names import SHAFT_OF, MeshName, Side
+from siggen.rig.sizes import possible_sizes, sized
 
 HARMLESS = {"operating_points": (), "sensors": (), "duration_s": 86_400.0}
 """In place of sections that are refused for themselves, where their defaults would not do."""
@@ -104,9 +105,14 @@ class PossibleGearbox:
         """Those with each pair of the set; itself where it has one pair."""
         return tuple(PossibleGearbox(own, self.refused) for own in pair_configs(self.config))
 
+    @cached_property
+    def dynamics(self) -> Dynamics:
+        """The section, with ranges of the sizes that each gearbox draws as a whole."""
+        return possible_sizes(self.config.dynamics, self.config.gears)
+
     def changed(self, state: int) -> PossibleGearbox:
         """Return those that a state has changed."""
-        sections = {name: getattr(self.config, name) for name in ("machine", *SECTIONS)}
+        sections = {name: getattr(self.config, name) for name in ("machine", *SECTIONS)} | {"dynamics": self.dynamics}
         changes = changed_sections(sections, [change for _, change in self.config.changes_of(state)])
         return PossibleGearbox(self.config.model_copy(update=changes), self.refused)
 
@@ -173,21 +179,24 @@ class PossibleGearbox:
 
     def law(self, uniform: Uniforms) -> ToothLaw:
         """Return how teeth push and rub."""
-        return tooth_law(draw(self.config.dynamics, uniform, "dynamics"))
+        return tooth_law(draw(self.dynamics, uniform, "dynamics"))
 
     def ball(self, side: Side, uniform: Uniforms) -> BallBearing | None:
         """Return each bearing of a shaft whose stiffness follows the load; None where it does not."""
-        section: BallGeometry | None = getattr(self.config.dynamics, side).bearing.geometry
+        config = self.config
+        gears = draw(config.gears, lambda _: MIDDLE, "gears")
+        dynamics = sized(config.dynamics, gears, uniform)
+        section: BallGeometry | None = getattr(dynamics, side).bearing.geometry
         return None if section is None else draw(section, uniform, f"dynamics.{side}.bearing.geometry").bearing()
 
     def rotor(self, side: Side, pair: GearPair, uniform: Uniforms) -> Rotor:
         """Return a gear of the first mesh on its bearings."""
-        section = draw(getattr(self.config.dynamics, side), uniform, f"dynamics.{side}")
+        section = draw(getattr(self.dynamics, side), uniform, f"dynamics.{side}")
         return rotor_numbers(section, pair.member(side), pair.face_width_m)
 
     def shaft(self, side: Side, pair: GearPair) -> Callable[[Uniforms], Shaft]:
         """Return what draws a shaft that bends, with a typical gear."""
-        rotor, shafts = self.rotor(side, pair, lambda _: MIDDLE), self.config.dynamics.shafts
+        rotor, shafts = self.rotor(side, pair, lambda _: MIDDLE), self.dynamics.shafts
         assert shafts is not None
         section, at = shafts.of(side), f"dynamics.shafts.{SHAFT_OF[side]}"
         return lambda uniform: shaft_numbers(draw(section, uniform, at), rotor, pair)
@@ -201,7 +210,7 @@ class PossibleGearbox:
 
     def shafts(self, uniform: Uniforms) -> Shafts | None:
         """Return the drawn section of shafts that bend."""
-        section = self.config.dynamics.shafts
+        section = self.dynamics.shafts
         return None if section is None else draw(section, uniform, "dynamics.shafts")
 
     def driven_inertia_kg_m2(self, pair: GearPair) -> float:
@@ -220,8 +229,9 @@ class PossibleGearbox:
 
     def number(self, path: str) -> Any:
         """Return the number of a key of sections, entries of a list by their place or name."""
-        value: Any = self.config
-        for key in path.split("."):
+        first, *keys = path.split(".")
+        value: Any = self.dynamics if first == "dynamics" else getattr(self.config, first)
+        for key in keys:
             if not isinstance(value, tuple):
                 value = getattr(value, key)
             else:

@@ -34,13 +34,23 @@ def rotor_numbers(section: RotorSection, gear: SpurGear, face_width_m: float) ->
     """Return a gear with both bearings of its shaft."""
     mass, inertia, bearing = section.mass_kg, section.inertia_kg_m2, section.bearing
     stiffness_x, stiffness_y = map(constant, each_of(bearing.stiffness_n_per_m, 2))
-    damping_x, damping_y = map(constant, each_of(bearing.damping_n_s_per_m, 2))
-    axial_stiffness = constant(bearing.axial_stiffness_n_per_m)
+    time_s = None if bearing.damping_time_s is None else constant(bearing.damping_time_s)
+    if time_s is not None:
+        damping_x, damping_y = time_s * stiffness_x, time_s * stiffness_y
+    else:
+        damping_x, damping_y = map(constant, each_of(bearing.damping_n_s_per_m, 2))
     return Rotor(
         base_radius_m=gear.base_radius_m,
         mass_kg=disc_mass_kg(gear, face_width_m) if mass is None else constant(mass),
         inertia_kg_m2=disc_inertia_kg_m2(gear, face_width_m) if inertia is None else constant(inertia),
-        bearing=Bearing(stiffness_x, stiffness_y, damping_x, damping_y, stiffness_z_n_per_m=axial_stiffness),
+        bearing=Bearing(
+            stiffness_x,
+            stiffness_y,
+            damping_x,
+            damping_y,
+            stiffness_z_n_per_m=constant(bearing.axial_stiffness_n_per_m),
+            damping_time_s=time_s,
+        ),
     )
 
 

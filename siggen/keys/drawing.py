@@ -44,7 +44,7 @@ def draw(section: SomeSection, uniform: Uniforms, path: str) -> SomeSection:
 
 
 def _drawn(value: Any, uniform: Uniforms, name: str, count: int) -> object:
-    if count:
+    if count and value is not None:
         numbers = enumerate(each_of(value, count))
         return Each(each=tuple(_drawn(number, uniform, f"{name}.{place}", 0) for place, number in numbers))  # type: ignore[misc]
     return at(value, uniform(name)) if isinstance(value, DRAWN) else value

@@ -21,6 +21,7 @@ Number: TypeAlias = float | Distribution | Changed
 """A physical number as the YAML file gives it, or as a state changes it."""
 
 
+LEFT_OUT = "a number that follows from others was not sized"
 LOW, MIDDLE, HIGH = -inf, 0.5, inf
 """Ends of a number in place of a uniform, and the uniform that half of all values lie below."""
 
@@ -32,15 +33,23 @@ def at(number: Number, u: float) -> float:
     return number.at(u) if LOW < u < HIGH else number.bounds()[u == HIGH]
 
 
-def bounds(number: Number | Each) -> tuple[float, float]:
-    """Return the smallest and the largest value that a number, or one of several, may take."""
+def bounds(number: Number | Each | None) -> tuple[float, float]:
+    """Return the smallest and the largest value that a number, or one of several, may take.
+
+    Raises
+    ------
+    TypeError
+        If it is left out.
+    """
+    if number is None:
+        raise TypeError(LEFT_OUT)
     if isinstance(number, Each):
         lows, highs = zip(*map(bounds, number.each), strict=True)
         return min(lows), max(highs)
     return (number, number) if isinstance(number, float) else number.bounds()
 
 
-def constant(number: Number) -> float:
+def constant(number: Number | None) -> float:
     """Return the value of a number that has been drawn.
 
     Raises
@@ -68,7 +77,7 @@ class Each(Section):
         return f"{{each: [{', '.join(map(number_text, self.each))}]}}"
 
 
-def each_of(numbers: Number | Each, count: int) -> tuple[Number, ...]:
+def each_of(numbers: Number | Each | None, count: int) -> tuple[Number | None, ...]:
     """Return the number of each of so many things."""
     return numbers.each if isinstance(numbers, Each) else (numbers,) * count
 

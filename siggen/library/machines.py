@@ -16,12 +16,13 @@ from siggen.rig.rating import bearable_torque_nm, proposed_face_width_mm, rated_
 from siggen.rig.rig import Rig, checked_rig
 from siggen.rig.rig_numbers import RigNumbers, RotorNumbers, rig_numbers
 from siggen.rig.rig_text import BENCH_FACE_MM
-from siggen.rig.sizes import SPREAD
 
 __all__ = ["machine", "planetary"]
 
 FS_HZ = 409_600.0
 """What checks of the rated speed take; a run has a sampling rate of its own."""
+SPREAD = (0.75, 1.33)
+"""Of stiffness between bearings of one size: fit, clearance and number of balls are not known (assumed)."""
 Entries = Mapping[str, Mapping[str, Any]]
 HOUSING_MM, HOUSING_KG = 235.5, (40.0, 80.0)
 """Centre distances of the preset `two_stage` together, and its housing, which grows with them."""

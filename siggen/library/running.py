@@ -155,6 +155,7 @@ def _design_of(
     harmonics = base.carried_harmonics(rate, speed_hz)
     changes: dict[str, object] = {"fs_hz": rate, "duration_s": samples / rate, "mesh_harmonics": harmonics}
     if isinstance(point, Point):
+        _refuse_stalling(gearbox._specimen, point.torque_nm or 0.0)
         changes["operating_points"] = [{"speed_hz": point.speed_hz, "torque_nm": point.torque_nm}]
     if truth:
         if not isinstance(truth, Sequence):
@@ -187,20 +188,19 @@ def _records(gearbox: Gearbox, design: SetDesign, cases: Sequence[Case]) -> Iter
         planned.append(PlannedRecord(0, gearbox.number, names.index(state), place, repeat, ""))
     with saying(KEYS):
         drawn = replace(design.gearbox(gearbox.number), rated_nm=gearbox._specimen.rated_nm)
-        _refuse_stalling(drawn)
         for found in simulate_specimen(drawn, planned):
             if isinstance(found, RecordFailure):
                 raise SolverFailure(found.status, found.reason)
             yield _record(gearbox, design, found)
 
 
-def _refuse_stalling(gearbox: Specimen) -> None:
-    """Refuse torques at which a motor turns at less than half its speed."""
-    for point in gearbox.points:
-        slip = 0.0 if point.variation is None else point.variation.speed.slip * point.torque_nm / gearbox.rated_nm
+def _refuse_stalling(gearbox: Specimen, torque_nm: float) -> None:
+    """Refuse a torque at which a motor turns at less than half its speed."""
+    for point in gearbox.points[:1]:
+        slip = 0.0 if point.variation is None else point.variation.speed.slip * torque_nm / gearbox.rated_nm
         if slip >= HALF:
-            received = f"{point.torque_nm:g}, a slip of {slip:.0%}"
-            most = HALF / slip * point.torque_nm
+            received = f"{torque_nm:g}, a slip of {slip:.0%}"
+            most = HALF / slip * torque_nm
             raise refused("torque_nm", received, f"below {most:.4g}, at which the motor slips by half its speed")
 
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from siggen.config import GearsSection, OperatingRange
 from siggen.config.pairs import PairSection
 from siggen.keys.number import Number, at, bounds
-from siggen.rig.rig import Rig
+from siggen.rig.rig import Rig, RigDesign
 from siggen.rig.rig_numbers import rig_numbers
 from siggen.rig.shafts import LARGEST_BORE, root_diameter_mm, shaft_end_mm
 
@@ -142,6 +142,6 @@ def _bores_mm(before: Rig, after: Rig) -> Two:
 
 def _shaft_mm(torque_nm: float, root_mm: float) -> float:
     """Return a shaft for the torque, in steps of 5 mm where it is that thick, at most 0.6 of the root circle [mm]."""
-    needed = shaft_end_mm(torque_nm, root_mm)
+    needed = shaft_end_mm(torque_nm, root_mm, RigDesign())
     rounded = 5.0 * ceil(needed / 5.0) if needed > 10.0 else float(ceil(needed))
     return min(rounded, LARGEST_BORE * root_mm)

@@ -27,6 +27,28 @@ MOST_SEVERITIES = 12
 
 
 @dataclass(frozen=True, slots=True)
+class RigDesign:
+    """What a maker chooses for shafts and bearings; by default the middle of what gearboxes of a set draw (`Sizing`).
+
+    Parameters
+    ----------
+    torque_factor : float
+        Torque that shafts and bearings are made for, over the largest of the rig.
+    shear_n_per_mm2 : float
+        Allowed in the shaft end.
+    length_factor : float
+        Length of a shaft over the distance of its bearings.
+    series : int
+        Of the bearings, as far as balls of it last and stand side by side.
+    """
+
+    torque_factor: float = 1.375
+    shear_n_per_mm2: float = 18.5
+    length_factor: float = 1.2
+    series: int = 62
+
+
+@dataclass(frozen=True, slots=True)
 class Rig:
     """A single-stage spur gearbox.
 
@@ -49,6 +71,10 @@ class Rig:
         A key of `DAMAGES`.
     severities : int
         Sizes of damage.
+    spans_mm : (pinion, gear)
+        Distances of the bearings where they are given.
+    design : RigDesign
+        What its maker chose.
     """
 
     teeth: tuple[int, int]
@@ -64,6 +90,8 @@ class Rig:
     shifts: Pair = (0.0, 0.0)
     damage: str = "spalls"
     severities: int = 3
+    spans_mm: tuple[float | None, float | None] = (None, None)
+    design: RigDesign = RigDesign()
 
     @property
     def hunting_turns(self) -> int:

@@ -127,7 +127,10 @@ def _rotor(rig: Rig, i: int, shaft: ShaftSize, force_n: float) -> RotorNumbers:
     pitch_mm, thick_mm = rig.module_mm * rig.teeth[i], shaft.diameter_mm
     disc, rod = (
         STEEL_DENSITY_KG_M3 * 0.25 * pi * 1e-9 * area * length
-        for area, length in ((pitch_mm**2 - thick_mm**2, rig.face_width_mm), (thick_mm**2, shaft.span_mm))
+        for area, length in (
+            (pitch_mm**2 - thick_mm**2, rig.face_width_mm),
+            (thick_mm**2, rig.design.length_factor * shaft.span_mm),
+        )
     )
     inertia = 0.125e-6 * (disc * (pitch_mm**2 + thick_mm**2) + rod * thick_mm**2)
     return RotorNumbers(shaft, disc + rod, inertia, 2.0 * shaft.bearing.stiffness_n_per_m(0.5 * force_n))

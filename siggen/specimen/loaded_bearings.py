@@ -60,4 +60,6 @@ def on_loaded_bearing(rotor: Rotor, one: LoadedBearing) -> Rotor:
     stiffness = BEARINGS * one.stiffness_n_per_m
     x, xy, y = float(stiffness[0, 0]), float(stiffness[0, 1]), float(stiffness[1, 1])
     numbers = replace(rotor.bearing, stiffness_x_n_per_m=x, stiffness_y_n_per_m=y, stiffness_xy_n_per_m=xy)
+    if (time_s := numbers.damping_time_s) is not None:
+        numbers = replace(numbers, damping_x_n_s_per_m=time_s * x, damping_y_n_s_per_m=time_s * y)
     return replace(rotor, bearing=numbers)

@@ -41,8 +41,8 @@ SAID_OF = {
     "masses of other teeth": "dynamics.gear.inertia_kg_m2",
 }
 
-RIGID = {"bolts in N/mm", "casing in t"}
-"""Slips in what only a rigid housing has."""
+RIGID = {"bolts in N/mm", "casing in t", "masses of other teeth"}
+"""Slips in what only the preset has whose housing is rigid, and whose masses are given."""
 
 
 def told(*source: Any) -> str:

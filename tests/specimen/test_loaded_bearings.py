@@ -145,9 +145,9 @@ def test_plan_says_which_given_stiffness_a_bearing_replaces_and_which_it_does_no
 @pytest.mark.parametrize(
     ("path", "change"),
     [
-        ("dynamics.pinion.bearing.geometry.clearance_um", {"clearance_um": -1.0}),
+        ("dynamics.pinion.bearing.geometry.clearance_um", {"clearance_um": -200.0}),
         ("states.loose.changes.dynamics.pinion.bearing.geometry.clearance_um", {
-            "states": by_name([{"name": "healthy"}, {**LOOSE, "changes": {CLEARANCE: {"add": -30.0}}}])
+            "states": by_name([{"name": "healthy"}, {**LOOSE, "changes": {CLEARANCE: {"add": -130.0}}}])
         }),
         ("dynamics.gear.bearing.geometry.ball_diameter_mm", {
             "dynamics__gear__bearing__geometry": {"ball_diameter_mm": 15.0}

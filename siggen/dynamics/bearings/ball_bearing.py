@@ -35,7 +35,7 @@ class BallBearing:
     balls : int, from 1
     ball_diameter_m, pitch_diameter_m : float, the balls smaller than the circle of their centres, with room between
     contact_angle_rad : float, from 0 and below π/2
-    clearance_m : float, radial play from side to side, from 0
+    clearance_m : float, radial play from side to side; below 0 all balls are squeezed without a load, too
     """
 
     balls: int
@@ -105,9 +105,11 @@ class BallBearing:
         return np.maximum(along - 0.5 * self.clearance_m, 0.0)
 
     def half_zone_rad(self, deflection_m: float) -> float:
-        """Return half the angle over which balls bear load; 0 where the clearance is not closed."""
-        along = deflection_m * cos(self.contact_angle_rad)
-        return acos(0.5 * self.clearance_m / along) if 2.0 * along > self.clearance_m else 0.0
+        """Return half the angle over which balls bear load; 0 where the clearance is not closed, π of all balls."""
+        along, play = deflection_m * cos(self.contact_angle_rad), 0.5 * self.clearance_m
+        if along <= abs(play):
+            return pi if play < 0.0 else 0.0
+        return acos(play / along)
 
     def force_n(self, deflection_m: float) -> float:
         """Return the mean radial force over all angles of the cage under which a ring is moved so far [N]."""
@@ -128,7 +130,9 @@ class BallBearing:
         """
         if not 0.0 <= force_n < np.inf:
             raise ValueError(f"force_n: received {force_n}; allowed are finite forces from 0")
-        low = 0.5 * self.clearance_m / cos(self.contact_angle_rad)
+        low = max(0.5 * self.clearance_m, 0.0) / cos(self.contact_angle_rad)
+        if force_n == 0.0:
+            return low
         high = low + 1e-6
         while self.force_n(high) < force_n:
             high = low + 2.0 * (high - low)
@@ -137,4 +141,4 @@ class BallBearing:
             if middle in (low, high):
                 break
             low, high = (low, middle) if self.force_n(middle) >= force_n else (middle, high)
-        return high if force_n > 0.0 else low
+        return high

@@ -89,7 +89,7 @@ class LoadedBearing:
 
 
 def loaded_bearing(bearing: BallBearing, force_n: FloatArray, angles: int = ANGLES) -> LoadedBearing:
-    """Return a bearing under the force (2,) of its shaft; one with clearance and no force has no stiffness.
+    """Return a bearing under the force (2,) of its shaft; without force only one with preload has a stiffness.
 
     Raises
     ------
@@ -98,10 +98,12 @@ def loaded_bearing(bearing: BallBearing, force_n: FloatArray, angles: int = ANGL
     """
     size = float(np.hypot(*force_n))
     way = bearing.deflection_m(size)
-    if size == 0.0:
-        return LoadedBearing(bearing, np.asarray(force_n), way, 0.0, 0.0, np.zeros((angles, 2)))
     first = bearing.spacing_rad * (np.arange(angles) + 0.5) / angles
     balls = _Balls(bearing, first)
+    if size == 0.0:
+        still = np.zeros((angles, 2))
+        along, _, across = balls.stiffness(still).mean(axis=0).tolist()
+        return LoadedBearing(bearing, np.asarray(force_n), way, along, across, still)
     moved = _at_rest(balls, size, way)
     stiffness = balls.stiffness(moved).mean(axis=0)
     mean = float(moved[:, 0].mean())

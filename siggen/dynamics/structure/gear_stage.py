@@ -21,7 +21,8 @@ class Bearing:
     """Both bearings of one shaft together, along the centre line (x) and vertical (y).
 
     `stiffness_xy_n_per_m`: force along one axis per way along the other, of bearings that are stiffer along a slanted
-    load. `stiffness_z_n_per_m`: along the shaft, where helical teeth push.
+    load. `stiffness_z_n_per_m`: along the shaft, where helical teeth push. `damping_time_s`: damping over stiffness,
+    which it follows with the load; None: damping is the same at any load.
     """
 
     stiffness_x_n_per_m: float
@@ -30,6 +31,7 @@ class Bearing:
     damping_y_n_s_per_m: float
     stiffness_xy_n_per_m: float = 0.0
     stiffness_z_n_per_m: float = 1e8
+    damping_time_s: float | None = None
 
     @property
     def along_axis(self) -> tuple[float, float]:

@@ -9,7 +9,8 @@ import pytest
 from scipy.integrate import quad
 
 from siggen.dynamics.bearings.ball_bearing import BallBearing
-from siggen.rig.bearings import BALLS, BearingSize
+from siggen.dynamics.bearings.loaded_bearing import loaded_bearing
+from siggen.rig.bearings import BearingSize
 
 BEARING = BallBearing(9, 7.94e-3, 39.04e-3)
 
@@ -64,5 +65,33 @@ def test_the_deflection_is_that_of_the_catalogues_formula_of_a_whole_bearing() -
     slope = whole.stiffness_n_per_m(600.0)
     step = 1.0
     ours = 2.0 * step / (BEARING.deflection_m(600.0 + step) - BEARING.deflection_m(600.0 - step))
-    assert BEARING.balls == BALLS
+    assert BEARING.balls == whole.balls
     assert ours == pytest.approx(slope, rel=2e-3)  # it has 4.37 in place of the integral, and we a difference
+
+
+def test_preload_squeezes_all_balls_and_carries_the_load_softly_bent_to_that_of_hertz() -> None:
+    """Without load by hand: n balls of stiffness 1.5 K sqrt(G/2), half of which acts along any direction."""
+    tight = BallBearing(9, 7.94e-3, 39.04e-3, clearance_m=-10e-6)
+    along, across = (
+        loaded_bearing(tight, np.zeros(2)).along_n_per_m,
+        loaded_bearing(tight, np.zeros(2)).across_n_per_m,
+    )
+    expected = 0.5 * 9 * 1.5 * tight.contact_n_per_m15 * math.sqrt(5e-6)
+    assert along == pytest.approx(expected, rel=1e-12)
+    assert across == pytest.approx(expected, rel=1e-12)
+    small = loaded_bearing(tight, np.array([1.0, 0.0]))
+    assert small.moved_m == pytest.approx(1.0 / expected, rel=1e-3)
+    assert small.half_zone_rad == pytest.approx(math.pi)
+    # far above the preload it is a bearing without play, less the way that it is ahead
+    heavy = [loaded_bearing(one, np.array([5e5, 0.0])).along_n_per_m for one in (tight, BEARING)]
+    assert heavy[0] / heavy[1] == pytest.approx(1.0, abs=0.03)
+    assert BEARING.deflection_m(0.0) == tight.deflection_m(0.0) == 0.0
+
+
+def test_preload_that_vanishes_is_no_clearance() -> None:
+    none, least = (loaded_bearing(BallBearing(9, 7.94e-3, 39.04e-3, clearance_m=g), FORCE) for g in (0.0, -1e-12))
+    assert least.along_n_per_m == pytest.approx(none.along_n_per_m, rel=1e-5)
+    assert least.moved_m == pytest.approx(none.moved_m, rel=1e-5)
+
+
+FORCE = np.array([300.0, 100.0])
