@@ -48,18 +48,24 @@ def missing_m(
     pair: GearPair, side: Side, waves: FlankWaves, position_m: FloatArray, half_width_m: FloatArray | float
 ) -> FloatArray:
     """Return what waves take from every tooth (z, k) at positions s (k,), seen by a contact of half-width b (k,)."""
-    total = _of_table_m(pair, side, waves, position_m, half_width_m)
+    total = _of_table_m(pair, side, waves, position_m, position_m, half_width_m)
     return _with_form(total, pair, side, waves, position_m, half_width_m)
 
 
 def _of_table_m(
-    pair: GearPair, side: Side, waves: FlankWaves, position_m: FloatArray, half_width_m: FloatArray | float
+    pair: GearPair,
+    side: Side,
+    waves: FlankWaves,
+    position_m: FloatArray,
+    place_m: FloatArray,
+    half_width_m: FloatArray | float,
 ) -> FloatArray:
-    """Return what waves over all teeth take (z, k)."""
+    """Return what waves over all teeth take (z, k), where flanks at `place_m` (k,) touch."""
     from scipy.special import j0
 
     gear, sense = pair.member(side), 1.0 if side == Side.DRIVER else -1.0
-    roll, seen = _rolls(pair, side, position_m, half_width_m)
+    roll = _radius_m(pair, side, position_m) / gear.base_radius_m
+    seen = _seen(pair, side, place_m, half_width_m)
     tooth = sense * 2.0 * np.pi * np.arange(gear.teeth) / gear.teeth
     total = np.zeros((gear.teeth, position_m.size))
     for n, amplitude, phase in zip(waves.waves, waves.amplitude_m, waves.phase_rad, strict=True):
@@ -78,7 +84,8 @@ def _with_form(
     """Return the form (z, k) of single teeth added to a total."""
     from scipy.special import j0
 
-    roll, seen = _rolls(pair, side, position_m, half_width_m)
+    roll = _radius_m(pair, side, position_m) / pair.member(side).base_radius_m
+    seen = _seen(pair, side, position_m, half_width_m)
     per_cycle = 2.0 * np.pi * pair.member(side).base_radius_m / (pair.contact_end_m - pair.contact_start_m)
     together = waves.common_m + waves.own_m
     for h, amplitudes in zip(ORDERS, together.T, strict=True):
@@ -87,18 +94,16 @@ def _with_form(
     return total
 
 
-def _rolls(
-    pair: GearPair, side: Side, position_m: FloatArray, half_width_m: FloatArray | float
-) -> tuple[FloatArray, FloatArray]:
-    """Return roll angles (k,) [rad], and b over ρ (k,): κb per wave on the revolution.
-
-    Tables of few teeth may begin below the base circle, where no flank is.
-    """
-    gear = pair.member(side)
+def _radius_m(pair: GearPair, side: Side, position_m: FloatArray) -> FloatArray:
+    """Return radii of curvature (k,) of a flank [m], below 0 below its base circle, where no flank is."""
     radius = position_m if side == Side.DRIVER else pair.line_of_action_m - position_m
-    radius = radius if gear.signed_base_radius_m > 0.0 else -radius
-    seen = np.divide(half_width_m, radius, out=np.zeros_like(radius), where=radius > 0.0)
-    return radius / gear.base_radius_m, seen
+    return radius if pair.member(side).signed_base_radius_m > 0.0 else -radius
+
+
+def _seen(pair: GearPair, side: Side, place_m: FloatArray, half_width_m: FloatArray | float) -> FloatArray:
+    """Return b over ρ (k,): κb per wave on the revolution; 0 below the base circle, where tables of few teeth begin."""
+    radius = _radius_m(pair, side, place_m)
+    return np.divide(half_width_m, radius, out=np.zeros_like(radius), where=radius > 0.0)
 
 
 def with_waves(
@@ -124,12 +129,12 @@ def with_waves(
 
         if shares is None:
             return missing_m(pair, side, waves, position, along(position))
-        width, teeth = along(nearest_place_m(pair, position)), pair.member(side).teeth
+        place, teeth = nearest_place_m(pair, position), pair.member(side).teeth
 
-        def form(place: FloatArray) -> FloatArray:
-            return _with_form(np.zeros((teeth, place.size)), pair, side, waves, place, along(place))
+        def form(met: FloatArray) -> FloatArray:
+            return _with_form(np.zeros((teeth, met.size)), pair, side, waves, met, along(met))
 
-        return _of_table_m(pair, side, waves, position, width) + shares.mean(position, form)
+        return _of_table_m(pair, side, waves, position, place, along(place)) + shares.mean(position, form)
 
     return replace(
         missing,

@@ -65,6 +65,21 @@ def test_the_mean_over_the_load_is_how_far_slices_with_errors_move_a_pair_apart(
     assert np.ptp(seen) > 5e-6 * size
 
 
+def test_where_the_middle_of_a_helical_face_lies_below_its_base_circle_a_wave_is_no_steeper_than_anywhere():
+    """The ends of the face still touch, on flanks above it: no curvature of the middle, which is none, counts."""
+    pair = helical_pair(15.0)
+    shares, plain = load_shares(pair, STIFFNESS, options(pair)), missing_material(pair, None)
+    position = np.linspace(plain.start_m, plain.end_m, plain.pinion.profile_m.shape[1])
+    assert position[0] < -0.1 * pair.base_pitch_m < pair.contact_start_m
+    number, height = 164.0, 1e-6
+    teeth = with_waves(plain, pair, waves(18, height, 0.0), waves(47, 0.0, 0.0), 1e5, shares).pinion
+    wave = teeth.profile_m - plain.pinion.profile_m
+    steepest = height * number / pair.pinion.base_radius_m
+    # The band under the load grows along the path: its wave fades by up to a tenth of its height a period.
+    assert np.abs(np.diff(wave, axis=1)).max() < 1.02 * steepest * (position[1] - position[0])
+    assert np.abs(wave).max() < height
+
+
 def test_helical_teeth_of_no_helix_miss_what_spur_teeth_do():
     near, spur = helical_pair(1e-7), helical_pair(0.0)
     shares = load_shares(near, STIFFNESS, options(near))
