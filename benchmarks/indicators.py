@@ -21,9 +21,8 @@ from diagnostics.indicators.registry import ALL
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.workers import CHUNK_RECORDS, mapped
 from diagnostics.records.gear_train import PAIR, pair_train
-from diagnostics.records.record_problems import clipped_channels, record_problems
 from diagnostics.records.recording import Recording
-from diagnostics.records.usable_records import refused_parts
+from diagnostics.records.usable_records import clipped_channels, record_problems, refused_parts
 from diagnostics.signal.noise_sketch import noise_sketch
 from diagnostics.signal.order_domain import AngleGrid, angle_grid, resample_to_angle
 from diagnostics.signal.shaft_angle import shaft_angle

@@ -14,13 +14,11 @@ from typing import Any
 import numpy as np
 
 from diagnostics.base.progress import Stage, silent_stage
-from diagnostics.explore.chosen_records import chosen_records, missing_parts
 from diagnostics.explore.look import look_of, look_page
 from diagnostics.explore.measured_page import ShownRecording, missing_sentences, recordings_source
-from diagnostics.explore.packed import packed_column, unpacked_column
-from diagnostics.explore.payload import PageSource, RecordList
+from diagnostics.explore.payload import PageSource, RecordList, packed_column, unpacked_column
 from diagnostics.explore.set_page import LookOptions, set_name
-from diagnostics.explore.set_source import set_source
+from diagnostics.explore.set_source import chosen_records, missing_parts, set_source
 from diagnostics.indicators.table import record_table
 from diagnostics.records.recording import Recording
 from diagnostics.records.state_classes import HEALTHY

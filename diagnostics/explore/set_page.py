@@ -12,10 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from diagnostics.base.progress import Stage, silent_stage
-from diagnostics.explore.chosen_records import chosen_records, missing_parts
 from diagnostics.explore.look import Look, look_of, look_page
 from diagnostics.explore.payload import PageSource, RecordList
-from diagnostics.explore.set_source import set_source
+from diagnostics.explore.set_source import chosen_records, missing_parts, set_source
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import RecordTable, record_table
 from diagnostics.prediction.released_model import ReleasedModel

@@ -1,25 +1,177 @@
-"""A set as the source of a page: labels, indicators, signals, damage, and what no sensor sees where a set stores it."""
+"""A set as the source of a page: labels, indicators, signals, damage, and what no sensor sees where a set stores it.
+
+Which of its records a page shows, and which healthy record each is laid over. Damaged flanks are to scale: face width,
+ends of the flank, and the outline of every pit or spall.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
+from math import acos, cos, pi, radians, tan
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from diagnostics.explore.chosen_records import overlaid_records
-from diagnostics.explore.detail import Detail
-from diagnostics.explore.flanks import flank_size, outlines
-from diagnostics.explore.page_labels import further_labels
-from diagnostics.explore.payload import PageSource, packed_indicators
-from diagnostics.explore.record_views import packed_wave
+from diagnostics.explore.payload import Detail, PageSource, further_labels, packed_indicators, packed_wave
 from diagnostics.indicators.table import RecordTable
+from diagnostics.page.wording import counted
 from diagnostics.records.channel_quantities import channel_quantities
 from diagnostics.records.recording import Recording, one_recording, pair_teeth, recordings
+from diagnostics.records.state_classes import HEALTHY
 from siggen.dataset.reading import Dataset
+
+
+def missing_parts(
+    labels: Mapping[str, np.ndarray],
+    overlaid: Sequence[int | None],
+    damaged_flanks: bool,
+    internals: bool,
+    *,
+    named: bool,
+) -> list[str]:
+    """Return sentences on what is missing; none for a set that has everything."""
+    healthy = labels["fault"] == HEALTHY
+    alone = sum(other is None for other in overlaid)
+    found = []
+    if not healthy.any():
+        found.append(
+            "No healthy records: no overlay, no difference, and no place of an indicator among healthy gearboxes. A "
+            "state without damage under “states” in the configuration gives them."
+        )
+    elif alone:
+        found.append(
+            f"{counted(alone, 'record')} of {healthy.size} without another healthy record of the same gearbox at the "
+            "same operating point: these have no overlay. More “repeats” give healthy records a second one."
+        )
+    if healthy.any() and np.unique(labels["specimen_id"][healthy]).size < 2:
+        found.append("Healthy records of one gearbox only: an indicator has no place among other healthy gearboxes.")
+    if not damaged_flanks:
+        found.append("No table of damage beside the labels, or no damaged record: no flank is drawn.")
+    if not internals:
+        found.append(
+            "Neither transmission error nor mesh force in the set: quantities that no sensor sees are not there to "
+            "show. “internals” in the configuration stores them."
+        )
+    if not named:
+        found.append(
+            "No model: the page does not say what a classifier names each record. `siggen-diagnostics explore --model` "
+            "takes the folder that `report` wrote."
+        )
+    return found
+
+
+def chosen_records(labels: Mapping[str, np.ndarray], limit: int, first: Sequence[int] = ()) -> np.ndarray:
+    """Return the rows of whole gearboxes, spread evenly over the set, that stay within the limit.
+
+    Of a set whose first gearbox alone has more records, rows spread evenly over it come back.
+
+    Parameters
+    ----------
+    labels : mapping of str to (records,)
+        Column `specimen_id`.
+    limit : int
+        Most records.
+    first : sequence of int
+        Gearboxes that come before all others, in this order, as far as the limit allows.
+    """
+    specimens, counts = np.unique(labels["specimen_id"], return_counts=True)
+    if labels["specimen_id"].size <= limit:
+        return np.arange(labels["specimen_id"].size)
+    size = dict(zip(specimens.tolist(), counts.tolist(), strict=True))
+    kept = _first_within([number for number in dict.fromkeys(first) if number in size], size, limit)
+    rest = np.array([number for number in specimens.tolist() if number not in kept])
+    left = limit - sum(size[number] for number in kept)
+    for wanted in range(rest.size, -1, -1):
+        place = np.unique(np.linspace(0, rest.size - 1, wanted).round().astype(np.int64))
+        found = [*kept, *rest[place].tolist()]
+        if found and sum(size[number] for number in rest[place].tolist()) <= left:
+            return np.flatnonzero(np.isin(labels["specimen_id"], found))
+    rows = np.flatnonzero(labels["specimen_id"] == specimens[0])
+    return np.asarray(rows[np.unique(np.linspace(0, rows.size - 1, limit).round().astype(np.int64))])
+
+
+def _first_within(wanted: Sequence[int], size: Mapping[int, int], limit: int) -> list[int]:
+    """Return the gearboxes, in order, until the next would exceed the limit."""
+    total = np.cumsum([size[number] for number in wanted])
+    return [number for number, records in zip(wanted, total, strict=True) if records <= limit]
+
+
+def overlaid_records(labels: Mapping[str, np.ndarray]) -> list[int | None]:
+    """Return for every row the row of its gearbox's healthy record, None where there is no other than itself.
+
+    Same gearbox and operating point; the same repeat if there is one, for a healthy record another repeat.
+    """
+    healthy = labels["fault"] == HEALTHY
+    found: list[int | None] = []
+    for row in range(healthy.size):
+        same = healthy & (labels["specimen_id"] == labels["specimen_id"][row])
+        same &= labels["operating_point_id"] == labels["operating_point_id"][row]
+        same[row] = False
+        rows = np.flatnonzero(same)
+        nearest = rows[np.argsort(labels["repeat"][rows] != labels["repeat"][row], kind="stable")]
+        found.append(int(nearest[0]) if nearest.size else None)
+    return found
+
+
+ELLIPSE_CORNERS = 48
+DIGITS = 3
+
+
+def flank_size(
+    module_mm: object, pressure_angle_deg: object, face_width_mm: object, profile_shift: object, teeth: int
+) -> dict[str, float] | None:
+    """Return face width and heights of pitch circle and tip above the flank's point on the base circle [mm].
+
+    Heights lie along the tooth's axis, as in the table of damage: r cos(g_r) - R_b cos(g_b) with the half tooth angle
+    g_r = pi/2z + 2 x tan(alpha)/z + inv(alpha) - inv(alpha_r). Source: derived from the involute.
+
+    Returns
+    -------
+    dict or None
+        None where the configuration draws one of these numbers.
+    """
+    numbers = module_mm, pressure_angle_deg, face_width_mm, profile_shift
+    plain = [number for number in numbers if isinstance(number, float)]
+    if len(plain) < len(numbers):
+        return None
+    module, degrees, face, shift = plain
+    alpha, tip, pitch = radians(degrees), module * (teeth / 2 + 1.0 + shift), module * teeth / 2
+    base = pitch * cos(alpha)
+    half = pi / (2 * teeth) + 2 * shift * tan(alpha) / teeth + tan(alpha) - alpha
+
+    def height_mm(radius: float) -> float:
+        slope = acos(base / radius)
+        return round(radius * cos(half - (tan(slope) - slope)) - base * cos(half), DIGITS)
+
+    return {"face_mm": face, "pitch_mm": height_mm(pitch), "tip_mm": height_mm(tip)}
+
+
+def outlines(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return the damage of a record: gear, tooth, kind, depth, and corners (face, height) of the outline [mm]."""
+    return [
+        {
+            "gear": row["gear"],
+            "tooth": row["tooth"],
+            "kind": row["kind"],
+            "depth_mm": round(float(row["depth_mm"]), DIGITS),
+            "corners": _corners(row),
+        }
+        for row in rows
+    ]
+
+
+def _corners(row: Mapping[str, Any]) -> list[list[float]]:
+    face, height = np.asarray(row["polygon_face_mm"], float), np.asarray(row["polygon_height_mm"], float)
+    if face.size == 0:
+        angle = 2.0 * np.pi * np.arange(ELLIPSE_CORNERS) / ELLIPSE_CORNERS
+        face = row["face_mm"] + row["semi_axis_face_mm"] * np.cos(angle)
+        height = row["height_mm"] + row["semi_axis_profile_mm"] * np.sin(angle)
+    corners: list[list[float]] = np.round(np.stack([face, height], axis=1), DIGITS).tolist()
+    return corners
+
 
 WAVES_SHOWN = {
     "transmission_error_m": ("Transmission error", "µm", 1e6),

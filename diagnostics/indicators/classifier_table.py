@@ -22,9 +22,8 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable, record_table, revolution_columns
 from diagnostics.records.gear_train import MeshNames
 from diagnostics.records.record_classes import STATE, RecordClasses, record_classes, set_classes
-from diagnostics.records.record_problems import problem_list
 from diagnostics.records.state_classes import CLASS
-from diagnostics.records.usable_records import RecordCheck
+from diagnostics.records.usable_records import RecordCheck, problem_list
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, UsageError
 from siggen.file_writing import write_file

@@ -23,8 +23,8 @@ from diagnostics.indicators.line_levels import LEVELS
 from diagnostics.indicators.registry import BY_NAME, indicator_columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.workers import mapped
-from diagnostics.records.record_problems import RecordProblem
 from diagnostics.records.recording import Recording, recordings
+from diagnostics.records.usable_records import RecordProblem
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 

@@ -20,9 +20,9 @@ from diagnostics.indicators.history import history_indicators
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable, revolution_columns
-from diagnostics.records.record_problems import FEWEST_REVOLUTIONS, RecordProblem, is_rate, problem_list
 from diagnostics.records.recording import names_of, pair_teeth
 from diagnostics.records.state_classes import chosen_states
+from diagnostics.records.usable_records import FEWEST_REVOLUTIONS, RecordProblem, is_rate, problem_list
 from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError

@@ -22,10 +22,9 @@ from diagnostics.indicators.registry import taken_of
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.gear_train import Gearing, meshes_of, train_of
-from diagnostics.records.record_problems import RecordProblem, clipped_channels, record_problems
 from diagnostics.records.recording import Recording
 from diagnostics.records.sample_bytes import sample_bytes
-from diagnostics.records.usable_records import refused_parts
+from diagnostics.records.usable_records import RecordProblem, clipped_channels, record_problems, refused_parts
 from diagnostics.signal.noise_sketch import noise_sketch
 from diagnostics.signal.order_domain import AngleGrid, speed_variation_percent
 from diagnostics.signal.shaft_angle import shaft_angle

@@ -35,9 +35,9 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.workers import mapped
 from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.gear_train import PAIR, GearNames, in_column
-from diagnostics.records.record_problems import RecordProblem
 from diagnostics.records.recording import Recording, label_names, names_of, pair_teeth, recordings
 from diagnostics.records.sample_bytes import BYTES
+from diagnostics.records.usable_records import RecordProblem
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, UsageError
 from siggen.file_writing import write_file

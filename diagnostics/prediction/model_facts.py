@@ -28,6 +28,9 @@ from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
 
+REFERENCED = "referenced_"
+"""Prefix of the files of the healthy-referenced variant."""
+
 FACTS_FILE = "model.json"
 MODEL_FILES = (
     *("classifier.skops", "feature_names.json", "cnn.safetensors", "model_card.md"),

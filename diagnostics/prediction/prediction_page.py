@@ -19,8 +19,7 @@ import numpy as np
 import siggen
 from diagnostics.base.extras import require_packages
 from diagnostics.page import html
-from diagnostics.page.sideband_marks import draw_marks, mark_handles, order_words, sideband_places
-from diagnostics.page.style import new_figure, png_bytes, styled
+from diagnostics.page.style import draw_marks, mark_handles, new_figure, order_words, png_bytes, sideband_places, styled
 from diagnostics.page.wording import capitalised, counted, joined, percent
 from diagnostics.prediction.known_reasons import OwnState
 from diagnostics.prediction.model_facts import ModelFacts

@@ -19,13 +19,13 @@ from diagnostics.judging.judgement import NETWORK
 from diagnostics.prediction.model_facts import (
     FACTS_FILE,
     MODEL_FILES,
+    REFERENCED,
     ModelFacts,
     check_files,
     read_accuracy,
     read_facts,
     read_hashes,
 )
-from diagnostics.prediction.release import REFERENCED
 from diagnostics.prediction.training_distance import TrainingDistance
 from diagnostics.scoring.prediction_file import MODELS_FOLDER
 from diagnostics.statistics.evaluation import Interval

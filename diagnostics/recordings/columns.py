@@ -9,7 +9,7 @@ import numpy as np
 
 from diagnostics.recordings.columns_apart import columns_read_apart
 from diagnostics.recordings.recorded_columns import LARGEST, Columns
-from diagnostics.records.record_problems import LARGEST_CLIPPED_SHARE, clipped_share
+from diagnostics.records.usable_records import LARGEST_CLIPPED_SHARE, clipped_share
 from siggen.errors import UsageError
 
 PULSE_SHARE = 0.5

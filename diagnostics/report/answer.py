@@ -25,8 +25,7 @@ from diagnostics.judging.alarms import (
     JudgedDetector,
     StateFound,
 )
-from diagnostics.page.sideband_marks import mark_handles, order_words
-from diagnostics.page.style import WIDTH_IN, state_colours, styled
+from diagnostics.page.style import WIDTH_IN, mark_handles, order_words, state_colours, styled
 from diagnostics.page.wording import capitalised, counted, decimal, joined, limits, percent, percent_limits, rounded
 from diagnostics.records.state_classes import HEALTHY, kind_name
 from diagnostics.report.classifier_tables import picked

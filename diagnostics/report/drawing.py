@@ -13,8 +13,18 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.registry import mesh_words
 from diagnostics.judging.of_split import Training
 from diagnostics.page.provenance import without_path
-from diagnostics.page.sideband_marks import PASSING, draw_marks, mark_handles, order_words, sideband_places, turn_words
-from diagnostics.page.style import SLANTED, new_figure, state_colours, state_ticks
+from diagnostics.page.style import (
+    PASSING,
+    SLANTED,
+    draw_marks,
+    mark_handles,
+    new_figure,
+    order_words,
+    sideband_places,
+    state_colours,
+    state_ticks,
+    turn_words,
+)
 from diagnostics.page.tables import records_line, records_link, state_links
 from diagnostics.records.gear_train import GearMesh, meshes_of
 from diagnostics.records.recording import Recording, one_recording

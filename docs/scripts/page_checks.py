@@ -35,8 +35,7 @@ sys.path.insert(0, str(ROOT))
 
 from diagnostics.base.progress import silent_stage  # noqa: E402
 from diagnostics.explore.look import look_of, look_page  # noqa: E402
-from diagnostics.explore.packed import packed_column, unpacked_column  # noqa: E402
-from diagnostics.explore.payload import PageSource, RecordList  # noqa: E402
+from diagnostics.explore.payload import PageSource, RecordList, packed_column, unpacked_column  # noqa: E402  # noqa: E402
 from diagnostics.explore.set_page import COLUMNS, FILTERS  # noqa: E402
 from diagnostics.explore.set_source import set_source  # noqa: E402
 from diagnostics.indicators.table import record_table  # noqa: E402

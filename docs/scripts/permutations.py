@@ -80,7 +80,8 @@ def drawn(turn: int) -> MeasuredSet:
     values = {"pulses_per_s": np.full((specimen.size, 1), 30.0)}
     lines = (pattern[specimen] + noise).astype(np.complex64)
     nothing = np.zeros((specimen.size, 1), np.int64)
-    return MeasuredSet(labels, ("a",), values, (), [list(row) for row in lines], [], nothing, {}, [])
+    about = {"teeth": {"pinion": "teeth_pinion"}}
+    return MeasuredSet(labels, ("a",), values, (), [list(row) for row in lines], [], nothing, {}, [], about=about)
 
 
 class Prepared:

@@ -19,7 +19,7 @@ SHOWS = {
     "siggen.sensors.quantity": "a unit with raised digits",
     "diagnostics.recordings.measured_recording": "a unit with raised digits",
     "diagnostics.page.wording": "the sign of a number",
-    "diagnostics.page.power_labels": "ticks of a figure, as matplotlib writes them",
+    "diagnostics.page.style": "ticks of a figure, as matplotlib writes them",
     "diagnostics.page.html": "markup and signs of numbers",
     "diagnostics.page.live": "data inside a script",
     "diagnostics.page.security_policy": "line ends of a script, as browsers hash it",

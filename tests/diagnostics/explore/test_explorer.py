@@ -16,9 +16,9 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
 
-from diagnostics.explore.chosen_records import chosen_records, overlaid_records
-from diagnostics.explore.detail import BYTES_PER_POINT, page_detail
+from diagnostics.explore.payload import BYTES_PER_POINT, page_detail
 from diagnostics.explore.set_page import LookOptions, predicted_labels, set_look, write_set_page
+from diagnostics.explore.set_source import chosen_records, overlaid_records
 from diagnostics.indicators.registry import columns, indicator_definitions, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable

@@ -7,8 +7,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from diagnostics.explore.packed import MOST_EXACT, packed_column, packed_places, packed_steps, unpacked_column
-from diagnostics.explore.record_views import drawn_signal, extreme_points
+from diagnostics.explore.payload import (
+    MOST_EXACT,
+    drawn_signal,
+    extreme_points,
+    packed_column,
+    packed_places,
+    packed_steps,
+    unpacked_column,
+)
 from tests.diagnostics.explore.unpacked import places, steps
 
 

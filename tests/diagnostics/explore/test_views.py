@@ -8,9 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnostics.explore.detail import Detail
-from diagnostics.explore.flanks import flank_size, outlines
-from diagnostics.explore.record_views import OrderAxis, PageAxes, record_views
+from diagnostics.explore.payload import Detail, OrderAxis, PageAxes, record_views
+from diagnostics.explore.set_source import flank_size, outlines
 from diagnostics.records.gear_train import pair_train
 from diagnostics.records.recording import Recording
 from diagnostics.signal.spectrum import envelope_spectrum

@@ -18,8 +18,8 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import record_table
 from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.gear_train import PAIR, pair_train, with_teeth
-from diagnostics.records.record_problems import clipped_channels, clipped_share, record_problems
 from diagnostics.records.recording import Recording, recordings
+from diagnostics.records.usable_records import clipped_channels, clipped_share, record_problems
 from diagnostics.signal.mesh_band import mesh_basebands
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 from diagnostics.signal.shaft_signals import record_shafts, shaft_signals

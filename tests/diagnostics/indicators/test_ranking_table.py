@@ -7,7 +7,7 @@ import pyarrow as pa
 import pytest
 
 from diagnostics.indicators.ranking_table import duration_advice, needed_duration
-from diagnostics.records.record_problems import FEWEST_REVOLUTIONS
+from diagnostics.records.usable_records import FEWEST_REVOLUTIONS
 from tests.diagnostics.column_roles import ListedRoles
 
 

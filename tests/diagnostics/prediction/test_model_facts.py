@@ -12,8 +12,7 @@ import pytest
 
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.prediction.model_facts import model_facts
-from diagnostics.prediction.release import release
-from diagnostics.prediction.saved_models import release_card
+from diagnostics.prediction.saved_models import release, release_card
 from diagnostics.training.splits import specimen_split
 
 
