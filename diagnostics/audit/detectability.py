@@ -23,6 +23,7 @@ import numpy as np
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.judging.evaluation import Entry, pooled_scores
 from diagnostics.records.state_classes import HEALTHY, damage_kind
 from diagnostics.statistics.evaluation import Interval, area_interval, bootstrap_weights, weighted_auc
 from diagnostics.statistics.indicator_statistics import best_by_state, separability
@@ -156,7 +157,8 @@ def state_auc(values: np.ndarray, positive: np.ndarray, specimen: np.ndarray, se
     for repeat in range(REPEATS):
         half, fold = dealt(specimen, seed, repeat)
         used = half == positive
-        score = held_out_scores(values[used], positive[used], fold[used])
+        entry = Entry("", BalancedLogistic, values[used], used[used])
+        score = pooled_scores(entry, positive[used], specimen[used], fold[used])[0]
         areas.append(weighted_auc(score, positive[used], weights[:, used], specimen[used]))
     defined = np.isfinite(areas)
     with np.errstate(invalid="ignore"):
@@ -171,22 +173,25 @@ def dealt(specimen: np.ndarray, seed: int, repeat: int) -> tuple[np.ndarray, np.
     return (place % 2 == 1)[index], (place // 2 % FOLDS)[index]
 
 
-def held_out_scores(values: np.ndarray, positive: np.ndarray, fold: np.ndarray) -> np.ndarray:
-    """Return each record's log odds from a classifier trained on the other folds."""
-    from sklearn import config_context
-    from sklearn.linear_model import LogisticRegression
+class BalancedLogistic:
+    """Logistic regression on standardised columns, both classes of equal weight; scores are log odds."""
 
-    score = np.zeros(positive.size)
-    # thousands of fits of a few records: a pipeline and its checks cost more than the fits
-    with config_context(assume_finite=True, skip_parameter_validation=True):
-        for held in np.unique(fold):
-            train = fold != held
-            if np.unique(positive[train]).size == 2:
-                spread = values[train].std(axis=0)
-                scaled = (values - values[train].mean(axis=0)) / np.where(spread > 0.0, spread, 1.0)
-                model = LogisticRegression(class_weight="balanced", max_iter=1000).fit(scaled[train], positive[train])
-                score[~train] = model.decision_function(scaled[~train])
-    return score
+    def fit(self, X: np.ndarray, y: np.ndarray, groups: np.ndarray) -> BalancedLogistic:  # noqa: ARG002
+        """Fit to X (n, columns) and y (n,)."""
+        from sklearn import config_context
+        from sklearn.linear_model import LogisticRegression
+
+        spread = X.std(axis=0)
+        self.mean, self.spread = X.mean(axis=0), np.where(spread > 0.0, spread, 1.0)
+        # thousands of fits of a few records: a pipeline and its checks cost more than the fits
+        with config_context(assume_finite=True, skip_parameter_validation=True):
+            model = LogisticRegression(class_weight="balanced", max_iter=1000)
+            self.model = model.fit((X - self.mean) / self.spread, y)
+        return self
+
+    def score(self, X: np.ndarray) -> np.ndarray:
+        """Return the log odds, (m,)."""
+        return np.asarray(((X - self.mean) / self.spread) @ self.model.coef_[0] + self.model.intercept_[0])
 
 
 @dataclass(frozen=True, slots=True)

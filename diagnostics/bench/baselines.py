@@ -234,24 +234,6 @@ class AsItIs:
         return X
 
 
-class RidgeOfRecords:
-    """Ridge regression whose penalty is chosen by leaving one record out, as MiniRocket does."""
-
-    def fit(self, X: np.ndarray, y: np.ndarray, groups: np.ndarray) -> RidgeOfRecords:  # noqa: ARG002
-        """Fit to X (n, columns)."""
-        from sklearn.linear_model import RidgeClassifierCV
-        from sklearn.pipeline import make_pipeline
-        from sklearn.preprocessing import StandardScaler
-
-        model = make_pipeline(StandardScaler(), RidgeClassifierCV(np.logspace(-1, 5, 10), class_weight="balanced"))
-        self.model = model.fit(X, y)
-        return self
-
-    def score(self, X: np.ndarray) -> np.ndarray:
-        """Return the distance from the plane between both classes."""
-        return np.asarray(self.model.decision_function(X))
-
-
 class StoppedNetwork:
     """The 1-D network; every fifth gearbox says when to stop. X are places of records; scores are log odds."""
 
@@ -281,6 +263,10 @@ class StoppedNetwork:
 
 def entries(seen: SeenRecords, seed: int) -> list[Entry]:
     """Return the baselines without the stack; the network only with PyTorch."""
+    from sklearn.linear_model import RidgeClassifierCV
+    from sklearn.pipeline import make_pipeline
+    from sklearn.preprocessing import StandardScaler
+
     from diagnostics.training.classifiers import DEFAULT_TREES, BoostingBaseline, LogisticBaseline
 
     every = np.ones(len(seen.kurtogram), dtype=bool)
@@ -289,6 +275,11 @@ def entries(seen: SeenRecords, seed: int) -> list[Entry]:
 
     def logistic() -> Odds:
         return Odds(LogisticBaseline((DEFAULT_STRENGTH,), take_logarithms=not seen.referenced))
+
+    def ridge() -> Odds:
+        """Return ridge regression whose penalty is chosen by leaving one record out, as MiniRocket does."""
+        model = RidgeClassifierCV(np.logspace(-1, 5, 10), class_weight="balanced")
+        return Odds(make_pipeline(StandardScaler(), model))
 
     bands, convolutions = (np.where(np.isfinite(x), x, 0.0) for x in (seen.bands, seen.convolutions))
     lots = generator(seed, Purpose.PERMUTATION, CHANCE_OWNER).uniform(size=every.size)
@@ -299,7 +290,7 @@ def entries(seen: SeenRecords, seed: int) -> list[Entry]:
         Entry(SIX, logistic, only(seen, (*LEVELS, *PLAIN, *ADDED)).values, every),
         Entry(BAND, partial(BestColumn, [str(k) for k in range(bands.shape[1])]), bands, every),
         Entry(BOOSTING, lambda: Odds(BoostingBaseline(seed, DEFAULT_TREES)), seen.matrix.values, every),
-        Entry(CONVOLUTIONS, RidgeOfRecords, convolutions, every),
+        Entry(CONVOLUTIONS, ridge, convolutions, every),
         Entry(NETWORK, partial(StoppedNetwork, seen.averages, stops, seed), np.arange(every.size), every),
     ]
     return found[:-1] if missing_packages("torch", "safetensors") else found

@@ -339,8 +339,8 @@ def evaluate(model: Any, data: FeatureMatrix, *, beside: bool = False, seed: int
     Parameters
     ----------
     model
-        Classifier of scikit-learn, or anything with `fit(X, y)` or `fit(X, y, groups)` and `predict_proba(X)`. Each of
-        five folds fits a copy to whether records are damaged.
+        Classifier of scikit-learn, or anything with `fit(X, y)` or `fit(X, y, groups)`, and `decision_function(X)` or
+        `predict_proba(X)`. Each of five folds fits a copy to whether records are damaged.
     data : FeatureMatrix
         What `diagnostics.table` returned.
     beside : bool
@@ -356,10 +356,11 @@ def evaluate(model: Any, data: FeatureMatrix, *, beside: bool = False, seed: int
     Raises
     ------
     UsageError
-        If the model lacks a method, or fewer than four gearboxes have healthy or damaged records.
+        If the model lacks these methods, or fewer than four gearboxes have healthy or damaged records.
     """
-    if lacking := [name for name in ("fit", "predict_proba") if not hasattr(model, name)]:
-        raise UsageError(f"evaluate: received {type(model).__name__} without {' and '.join(lacking)}; both are needed")
+    if not hasattr(model, "fit") or not any(hasattr(model, name) for name in ("decision_function", "predict_proba")):
+        what = f"{type(model).__name__} without `fit` and `decision_function` or `predict_proba`"
+        raise UsageError(f"evaluate: received {what}; allowed: classifiers of scikit-learn, and what has these methods")
     taken = healthy_referenced(data)[0] if beside else data
     if too_few(taken):
         raise UsageError(

@@ -106,12 +106,12 @@ def _left_out_errors(
 
 
 class Odds:
-    """Any classifier of scikit-learn as a detector: the logarithm of the odds of damage.
+    """Any classifier of scikit-learn as a detector: its decision function, else the logarithm of the odds of damage.
 
     Parameters
     ----------
     classifier
-        With `fit(X, y)` or `fit(X, y, groups)`, and `predict_proba(X)`.
+        With `fit(X, y)` or `fit(X, y, groups)`, and `decision_function(X)` or `predict_proba(X)`.
     """
 
     def __init__(self, classifier: Any) -> None:
@@ -124,7 +124,9 @@ class Odds:
         return self
 
     def score(self, X: np.ndarray) -> np.ndarray:
-        """Return the logarithm, (m,)."""
+        """Return the score, (m,)."""
+        if hasattr(self.classifier, "decision_function"):
+            return np.asarray(self.classifier.decision_function(X))
         damage = self.classifier.predict_proba(X)[:, 1]
         return np.asarray(np.log(np.maximum(damage, SMALLEST)) - np.log(np.maximum(1.0 - damage, SMALLEST)))
 

@@ -6,6 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
+from sklearn.cluster import KMeans
 from sklearn.ensemble import RandomForestClassifier
 from sklearn.svm import LinearSVC
 
@@ -144,7 +145,8 @@ def test_any_classifier_is_judged_as_those_of_a_report_are() -> None:
     forest = evaluate(RandomForestClassifier(50, random_state=0), matrix)  # takes no groups
     assert forest.states["severe"].auc.low > 0.5
     assert f"severe: AUC {forest.states['severe'].auc.value:.3f}" in str(forest)
-    with pytest.raises(UsageError, match=r"LinearSVC without predict_proba; both are needed"):
-        evaluate(LinearSVC(), matrix)
+    assert evaluate(LinearSVC(), matrix).specimens == GEARBOXES  # has no probabilities
+    with pytest.raises(UsageError, match=r"received KMeans without `fit` and `decision_function` or `predict_proba`"):
+        evaluate(KMeans(2), matrix)
     with pytest.raises(UsageError, match=r"allowed: 4 or more with healthy records, and as many with damaged ones$"):
         evaluate(own, matrix.rows(matrix.groups < 3))
