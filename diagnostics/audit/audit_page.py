@@ -220,13 +220,13 @@ def _number(value: float) -> Cell:
 
 
 def audit_summary(audit: Audit) -> list[str]:
-    """Return what shams tell, the verdict and its basis, realism if asked for, the hardest state, the size found."""
+    """Return the verdict, what shams tell, its basis, realism if asked for, the hardest state, the size found."""
     found = [basis_sentence(audit)]
     found += [_realism_sentence(audit.realism)] if audit.realism else []
     found += reference_sentences(audit.reference) if audit.reference else []
     return [
-        *sham_sentences(audit.shams),
         audit.verdict,
+        *sham_sentences(audit.shams),
         *found,
         *_hardest_sentence(audit),
         *([] if audit.gearboxes_needed else _size_sentence(shown_ladders(audit))),
@@ -414,7 +414,8 @@ def _frame(axis: Any, name: str) -> None:
 def audit_page(audit: Audit, dataset: Dataset, drawn: dict[str, bytes]) -> str:
     """Return the page."""
     title = f"Audit of {dataset.path.name}"
-    parts = [html.heading(title, 1), *html.summary(audit_summary(audit)), html.heading("Traps")]
+    tone = "failed" if audit.findings or audit.tells_too_little else "passed"
+    parts = [html.heading(title, 1), *html.summary(audit_summary(audit), tone), html.heading("Traps")]
     parts.append(_findings_table(audit) if audit.findings else html.paragraph(audit.verdict))
     if audit.realism:
         parts += [html.heading("Against healthy gearboxes"), *_realism_parts(audit.realism, drawn)]

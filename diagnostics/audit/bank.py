@@ -392,17 +392,15 @@ def sham_traps(found: Sequence[ShamFound]) -> list[Finding]:
 
 
 def sham_sentences(found: Sequence[ShamFound]) -> list[str]:
-    """Say of every sham how well it is told from healthy records, and what that means."""
-    return [
-        f"{one.state} is a sham: its damage was drawn and passed on with nothing removed. The strongest attacker "
-        f"{one.side}, {one.attacker}, tells it from {HEALTHY} with an AUC of {decimal(one.auc.value)} "
-        f"({limits(one.auc)}); {_chance_text(one)}"
-        for one in found
-    ]
-
-
-def _chance_text(one: ShamFound) -> str:
-    if one.chance is None or not math.isfinite(one.chance.auc):
-        return "what chance reaches is not known."
-    said = f"chance reaches {decimal(one.chance.auc)} in 5 % of the cases."
-    return f"{said} More than chance: damage counts as found only above this AUC." if one.told else said
+    """Say in one sentence how well the shams of a set are told from healthy records; nothing without any."""
+    if not found:
+        return []
+    worst = max(found, key=lambda one: (one.told, one.auc.value))
+    reached = f"an AUC of {decimal(worst.auc.value)} ({limits(worst.auc)}) by {worst.attacker} on {worst.state}"
+    chance = worst.chance.auc if worst.chance else math.nan
+    by_chance = f"; chance reaches {decimal(chance)} in 5 % of the cases" if math.isfinite(chance) else ""
+    if worst.told:
+        return [
+            f"A sham, damage without effect, is told from {HEALTHY}: {reached}{by_chance}. Only more than that counts."
+        ]
+    return [f"Shams, damage without effect, are not told from {HEALTHY}: at most {reached}{by_chance}."]

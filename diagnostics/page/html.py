@@ -27,6 +27,7 @@ h2{font-size:1.2rem;margin:2.4rem 0 .6rem;padding-top:.8rem;border-top:1px solid
 p,li{max-width:46rem;overflow-wrap:anywhere}
 .first{font-size:1.06rem;padding:.8rem 1rem;background:var(--warm);border-left:4px solid #e3a21a;
 border-radius:0 6px 6px 0;max-width:none}
+.passed{background:#2e8b5722;border-left-color:#2e8b57}.failed{background:#b01e3c22;border-left-color:#b01e3c}
 .note{padding:.6rem 1rem;background:var(--band);border-left:4px solid var(--soft);
 border-radius:0 6px 6px 0;max-width:none}
 .caption,figcaption{font-size:.9rem;color:var(--soft)}
@@ -227,10 +228,10 @@ def paragraph(text: str, style: str = "") -> str:
     return f'<p class="{style}">{inline(text)}</p>' if style else f"<p>{inline(text)}</p>"
 
 
-def summary(sentences: Sequence[str]) -> list[str]:
-    """Return the sentences of a summary, the first of them, which says what all others mean, set off."""
+def summary(sentences: Sequence[str], verdict: str = "") -> list[str]:
+    """Return the sentences of a summary, the first, which says what all others mean, set off: `passed`, `failed`."""
     first, *others = sentences
-    return [paragraph(first, "first"), *(paragraph(sentence) for sentence in others)]
+    return [paragraph(first, f"first {verdict}".rstrip()), *(paragraph(sentence) for sentence in others)]
 
 
 def notes(texts: Sequence[str]) -> list[str]:

@@ -55,7 +55,7 @@ def test_noise_tells_a_sham_as_often_as_chance_does() -> None:
     assert sum(one.told for one in found) <= 4
     assert sham_traps(found) == []
     passed = next(one for one in found if not one.told)
-    assert "More than chance" not in sham_sentences([passed])[0]
+    assert sham_sentences([passed])[0].startswith("Shams, damage without effect, are not told from healthy: at most")
 
 
 def test_a_leak_tells_a_sham() -> None:
@@ -64,7 +64,7 @@ def test_a_leak_tells_a_sham() -> None:
     assert found.told
     assert found.auc.value == 1.0
     assert [trap.trap for trap in sham_traps([found])] == ["sham_told_from_healthy"]
-    assert "More than chance" in sham_sentences([found])[0]
+    assert "is told from healthy: an AUC of 1.00" in sham_sentences([found])[0]
 
 
 def test_damage_beside_it_does_not_count() -> None:
