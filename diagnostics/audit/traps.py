@@ -25,7 +25,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
@@ -169,8 +169,8 @@ def error_draws(measured: MeasuredSet) -> list[Finding]:
     return [*equal_error_labels(measured), *equal_waveforms(measured)]
 
 
-def equal_error_labels(measured: MeasuredSet) -> list[Finding]:
-    """Return a finding if the error labels of all healthy specimens agree though they are not zero."""
+def equal_error_labels(measured: MeasuredSet) -> Iterator[Finding]:
+    """Yield a finding if the error labels of all healthy specimens agree though they are not zero."""
     healthy = measured.healthy
     _, first = np.unique(measured.labels["specimen_id"][healthy], return_index=True)
     names = [name for name, section in measured.sections.items() if section == MANUFACTURE and name in measured.labels]
@@ -178,19 +178,17 @@ def equal_error_labels(measured: MeasuredSet) -> list[Finding]:
     numeric = {name: column for name, column in columns.items() if column.dtype.kind in "fiu" and np.any(column != 0)}
     varied = [name for name, column in numeric.items() if len(set(column.tolist())) > 1]
     if len(first) < 2 or not numeric or varied:
-        return []
-    return [
-        Finding(
-            "one_error_draw",
-            f"all {len(first)} healthy specimens have the same {', '.join(sorted(numeric)[:4])}",
-            "specimens must differ",
-            ERRORS_MEND,
-        )
-    ]
+        return
+    yield Finding(
+        "one_error_draw",
+        f"all {len(first)} healthy specimens have the same {', '.join(sorted(numeric)[:4])}",
+        "specimens must differ",
+        ERRORS_MEND,
+    )
 
 
-def equal_waveforms(measured: MeasuredSet) -> list[Finding]:
-    """Return a finding if averaged waveforms of healthy specimens agree after a rotation more often than allowed."""
+def equal_waveforms(measured: MeasuredSet) -> Iterator[Finding]:
+    """Yield a finding if averaged waveforms of healthy specimens agree after a rotation more often than allowed."""
     healthy = np.flatnonzero(measured.healthy)
     _, first = np.unique(measured.labels["specimen_id"][healthy], return_index=True)
     chosen = healthy[first][:MOST_SPECIMENS]
@@ -203,16 +201,14 @@ def equal_waveforms(measured: MeasuredSet) -> list[Finding]:
     ]
     alike = sum(found > max(LEAST_LIKENESS, chance_bound(lines, len(pairs))) for found, lines in judged)
     if not judged or alike / len(judged) <= ALIKE_ALLOWED:
-        return []
-    return [
-        Finding(
-            "one_error_draw",
-            f"{alike} of {len(judged)} pairs of healthy specimens have the same averaged waveform up to a rotation "
-            f"(mean likeness of sideband phases {np.mean([found for found, _ in judged]):.2f})",
-            f"a pair counts from likeness {LEAST_LIKENESS:g}, at most {ALIKE_ALLOWED:.0%} of the pairs are allowed",
-            ERRORS_MEND,
-        )
-    ]
+        return
+    yield Finding(
+        "one_error_draw",
+        f"{alike} of {len(judged)} pairs of healthy specimens have the same averaged waveform up to a rotation "
+        f"(mean likeness of sideband phases {np.mean([found for found, _ in judged]):.2f})",
+        f"a pair counts from likeness {LEAST_LIKENESS:g}, at most {ALIKE_ALLOWED:.0%} of the pairs are allowed",
+        ERRORS_MEND,
+    )
 
 
 def _sidebands(measured: MeasuredSet, record: int) -> dict[int, complex]:
@@ -259,7 +255,9 @@ class Tie:
 
 def state_ties(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
     """Return one finding for the columns of each section that tell the state."""
-    return [_tie_finding(group, ties) for group, ties in tied_columns(measured, seed).items()] + failed_states(measured)
+    return [_tie_finding(group, ties) for group, ties in tied_columns(measured, seed).items()] + [
+        *failed_states(measured)
+    ]
 
 
 def tied_columns(measured: MeasuredSet, seed: int = 0) -> dict[str, list[Tie]]:
@@ -376,11 +374,11 @@ def _tie_finding(group: str, ties: list[Tie]) -> Finding:
     )
 
 
-def failed_states(measured: MeasuredSet) -> list[Finding]:
-    """Return a finding if failed records gather in some states."""
+def failed_states(measured: MeasuredSet) -> Iterator[Finding]:
+    """Yield a finding if failed records gather in some states."""
     states = measured.states()
     if not measured.failures or len(states) < 2:
-        return []
+        return
     planned = [*measured.config.get("states", {})] or list(states)
     points, repeats = (int(measured.labels[name].max()) + 1 for name in ("operating_point_id", "repeat"))
     block = points * repeats
@@ -390,16 +388,14 @@ def failed_states(measured: MeasuredSet) -> list[Finding]:
     expected = counts.sum() / len(planned)
     # a count of failures scatters by its square root
     if counts.max() - expected <= LARGEST_DEVIATIONS * np.sqrt(expected):
-        return []
+        return
     worst = planned[int(counts.argmax())]
-    return [
-        Finding(
-            "state_tied_to_status",
-            f"{counts.max()} of {counts.sum()} failed records are of state {worst}",
-            f"{expected:.1f} were expected, at most {LARGEST_DEVIATIONS:g} standard deviations more are allowed",
-            "Change the settings that make this state fail. The records that are left of it are a selection.",
-        )
-    ]
+    yield Finding(
+        "state_tied_to_status",
+        f"{counts.max()} of {counts.sum()} failed records are of state {worst}",
+        f"{expected:.1f} were expected, at most {LARGEST_DEVIATIONS:g} standard deviations more are allowed",
+        "Change the settings that make this state fail. The records that are left of it are a selection.",
+    )
 
 
 SETTINGS = frozenset(
@@ -453,41 +449,37 @@ TRIVIAL = (
 )
 
 
-def shared_specimens(measured: MeasuredSet) -> list[Finding]:
-    """Return a finding if a specimen occurs in more than one split."""
+def shared_specimens(measured: MeasuredSet) -> Iterator[Finding]:
+    """Yield a finding if a specimen occurs in more than one split."""
     owners: dict[int, set[str]] = {}
     for specimen, split in zip(measured.labels["specimen_id"].tolist(), measured.labels["split"].tolist(), strict=True):
         owners.setdefault(specimen, set()).add(split)
     shared = sorted(specimen for specimen, splits in owners.items() if len(splits) > 1)
     if not shared:
-        return []
+        return
     shown = ", ".join(str(specimen) for specimen in shared[:5])
-    return [
-        Finding(
-            "specimen_in_two_splits",
-            f"{len(shared)} of {len(owners)} specimens ({shown}{', ...' if len(shared) > 5 else ''}) "
-            "have records in more than one split",
-            "allowed are none",
-            "Split by `specimen_id`. siggen does so, so the `split` column was changed: write it again.",
-        )
-    ]
+    yield Finding(
+        "specimen_in_two_splits",
+        f"{len(shared)} of {len(owners)} specimens ({shown}{', ...' if len(shared) > 5 else ''}) "
+        "have records in more than one split",
+        "allowed are none",
+        "Split by `specimen_id`. siggen does so, so the `split` column was changed: write it again.",
+    )
 
 
-def solver_settings(measured: MeasuredSet) -> list[Finding]:
-    """Return a finding if states of the configuration differ in settings that are not their damage."""
+def solver_settings(measured: MeasuredSet) -> Iterator[Finding]:
+    """Yield a finding if states of the configuration differ in settings that are not their damage."""
     states = [state for state in measured.config.get("states", {}).values() if isinstance(state, Mapping)]
     own = [_settings(state) for state in states]
     if len(own) < 2 or all(settings == own[0] for settings in own):
-        return []
+        return
     differing = sorted({key for settings in own for key in settings if any(s.get(key) != settings[key] for s in own)})
-    return [
-        Finding(
-            "solver_settings_by_state",
-            f"states differ in {', '.join(differing)}",
-            "states may differ in their damage only",
-            "Move these keys out of the states.",
-        )
-    ]
+    yield Finding(
+        "solver_settings_by_state",
+        f"states differ in {', '.join(differing)}",
+        "states may differ in their damage only",
+        "Move these keys out of the states.",
+    )
 
 
 def _settings(section: Mapping[str, Any]) -> dict[str, Any]:
@@ -535,29 +527,27 @@ def phasor_bound(count: int) -> float:
     return min(max(LEAST_PHASOR, math.sqrt(-math.log(CHANCE) / count)), 0.999)
 
 
-def healthy_sidebands(measured: MeasuredSet) -> list[Finding]:
-    """Return a finding if more than a fifth of the healthy channel-records has no visible sideband at mesh 1-3.
+def healthy_sidebands(measured: MeasuredSet) -> Iterator[Finding]:
+    """Yield a finding if more than a fifth of the healthy channel-records has no visible sideband at mesh 1-3.
 
     The bound was measured with accelerometers: channels of another quantity are not judged.
     """
     if measured.gears[0].planetary:
-        return []  # passing planets leave lines beside the mesh frequency in any healthy set
+        return  # passing planets leave lines beside the mesh frequency in any healthy set
     strongest = measured.values["strongest_sideband_db"][np.ix_(measured.healthy, measured.accelerations)]
     strongest = strongest[~np.isnan(strongest)]
     if strongest.size == 0:
-        return []
+        return
     share = float(np.mean(strongest < WEAKEST_DB))
     if share <= SHARE_ALLOWED:
-        return []
-    return [
-        Finding(
-            "healthy_without_sidebands",
-            f"{share:.0%} of the healthy channel-records have no {measured.gears[0].gears[0]} sideband of mesh 1-3 "
-            f"above {WEAKEST_DB:g} dB of its mesh line and 10 dB above the noise",
-            f"at most {SHARE_ALLOWED:.0%} are allowed, measured healthy gearboxes have -30 to -8 dB",
-            "Give the gears manufacturing errors (section `manufacture`), drawn anew for every specimen.",
-        )
-    ]
+        return
+    yield Finding(
+        "healthy_without_sidebands",
+        f"{share:.0%} of the healthy channel-records have no {measured.gears[0].gears[0]} sideband of mesh 1-3 "
+        f"above {WEAKEST_DB:g} dB of its mesh line and 10 dB above the noise",
+        f"at most {SHARE_ALLOWED:.0%} are allowed, measured healthy gearboxes have -30 to -8 dB",
+        "Give the gears manufacturing errors (section `manufacture`), drawn anew for every specimen.",
+    )
 
 
 def noise_copies(measured: MeasuredSet) -> list[Finding]:
@@ -570,24 +560,22 @@ def noise_copies(measured: MeasuredSet) -> list[Finding]:
     ]
 
 
-def copied_signals(measured: MeasuredSet) -> list[Finding]:
-    """Return a finding if two channel-records hold the same samples."""
+def copied_signals(measured: MeasuredSet) -> Iterator[Finding]:
+    """Yield a finding if two channel-records hold the same samples."""
     _, counts = np.unique(measured.checksums, return_counts=True)
     copies = int((counts - 1).sum())
     if copies == 0:
-        return []
-    return [
-        Finding(
-            "copied_signal",
-            f"{copies} of {measured.checksums.size} channel-records are copies of another one, sample by sample",
-            "allowed are none",
-            "Give every record its own seeds and remove the copies.",
-        )
-    ]
+        return
+    yield Finding(
+        "copied_signal",
+        f"{copies} of {measured.checksums.size} channel-records are copies of another one, sample by sample",
+        "allowed are none",
+        "Give every record its own seeds and remove the copies.",
+    )
 
 
-def repeated_runs(measured: MeasuredSet) -> list[Finding]:
-    """Return a finding if records hold runs of samples of each other, wherever they stand.
+def repeated_runs(measured: MeasuredSet) -> Iterator[Finding]:
+    """Yield a finding if records hold runs of samples of each other, wherever they stand.
 
     Copies of whole channels are told by `copied_signals`.
     """
@@ -597,15 +585,13 @@ def repeated_runs(measured: MeasuredSet) -> list[Finding]:
     again = {mark for mark, count in times.items() if count > 1}
     holding = sum(not again.isdisjoint(marks) for marks in held)
     if len(again) < FEWEST_RUNS:
-        return []
-    return [
-        Finding(
-            "repeated_samples",
-            f"{holding} records share {len(again)} runs of samples with another record, bit by bit",
-            f"fewer than {FEWEST_RUNS} are allowed",
-            "Give every record its own seeds and fill gaps in no record from another one.",
-        )
-    ]
+        return
+    yield Finding(
+        "repeated_samples",
+        f"{holding} records share {len(again)} runs of samples with another record, bit by bit",
+        f"fewer than {FEWEST_RUNS} are allowed",
+        "Give every record its own seeds and fill gaps in no record from another one.",
+    )
 
 
 def _copied(checksums: np.ndarray) -> np.ndarray:
@@ -614,8 +600,8 @@ def _copied(checksums: np.ndarray) -> np.ndarray:
     return np.asarray(counts[place.reshape(checksums.shape)] > 1)
 
 
-def shared_by_records(measured: MeasuredSet) -> list[Finding]:
-    """Return a finding if the noise of a channel in one record correlates with that in others."""
+def shared_by_records(measured: MeasuredSet) -> Iterator[Finding]:
+    """Yield a finding if the noise of a channel in one record correlates with that in others."""
     shared, judged, largest = np.zeros(len(measured.sketches), dtype=bool), 0, 0.0
     for channel in range(len(measured.channels)):
         held = np.flatnonzero([rows[channel].size > 0 for rows in measured.sketches])
@@ -632,20 +618,18 @@ def shared_by_records(measured: MeasuredSet) -> list[Finding]:
             largest = max(largest, float(above.max(initial=0.0)))
     together = int(shared.sum())
     if together <= COPIES_ALLOWED * judged:
-        return []
-    return [
-        Finding(
-            "noise_shared_by_records",
-            f"{together} of {judged} records share noise with another one (without the synchronous part, the "
-            f"correlation is up to {largest:.2f})",
-            f"a pair counts above {LARGEST_BETWEEN_RECORDS:g}, independent noise stays below 0.2",
-            "Draw noise from a generator of its own for every record.",
-        )
-    ]
+        return
+    yield Finding(
+        "noise_shared_by_records",
+        f"{together} of {judged} records share noise with another one (without the synchronous part, the "
+        f"correlation is up to {largest:.2f})",
+        f"a pair counts above {LARGEST_BETWEEN_RECORDS:g}, independent noise stays below 0.2",
+        "Draw noise from a generator of its own for every record.",
+    )
 
 
-def shared_by_channels(measured: MeasuredSet) -> list[Finding]:
-    """Return a finding if two channels hold the same noise in the median record."""
+def shared_by_channels(measured: MeasuredSet) -> Iterator[Finding]:
+    """Yield a finding if two channels hold the same noise in the median record."""
     worst, names = 0.0, ("", "")
     for a in range(len(measured.channels)):
         for b in range(a + 1, len(measured.channels)):
@@ -654,15 +638,13 @@ def shared_by_channels(measured: MeasuredSet) -> list[Finding]:
                 found = float(np.median([abs(np.vdot(x, y).real) / x.size for x, y in both]))
                 worst, names = max((worst, names), (found, (measured.channels[a], measured.channels[b])))
     if worst <= LARGEST_BETWEEN_CHANNELS:
-        return []
-    return [
-        Finding(
-            "noise_shared_by_channels",
-            f"channels {names[0]} and {names[1]} have the same noise (median correlation {worst:.2f})",
-            f"allowed is {LARGEST_BETWEEN_CHANNELS:g}",
-            "Give every channel its own noise stream and its own transfer path.",
-        )
-    ]
+        return
+    yield Finding(
+        "noise_shared_by_channels",
+        f"channels {names[0]} and {names[1]} have the same noise (median correlation {worst:.2f})",
+        f"allowed is {LARGEST_BETWEEN_CHANNELS:g}",
+        "Give every channel its own noise stream and its own transfer path.",
+    )
 
 
 def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]:

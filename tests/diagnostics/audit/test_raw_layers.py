@@ -84,6 +84,6 @@ def test_a_set_without_leaks_gives_no_finding_until_a_record_holds_samples_of_an
     values = signals(clean.table, CHANNELS[0])
     values[7, 3000:7000] = values[2, 1237:5237]  # not at the same place
     raw = raw_columns(recordings(replace(clean, table=with_signals(clean.table, CHANNELS[0], values))))
-    found = repeated_runs(replace(own, raw=raw))
+    found = list(repeated_runs(replace(own, raw=raw)))
     assert [finding.trap for finding in found] == ["repeated_samples"]
     assert "2 records" in found[0].measured
