@@ -73,7 +73,8 @@ def pace(config: Mapping[str, Any], changes: Mapping[str, Any]) -> float:
     histories = [own or [[1.0, 1.0]] for own in ({**life, **changes.get("life", {})}["history"], life["history"])]
     if any(len(block) > 2 for own in histories for block in own):
         return 1.0
-    exponent = life["damage"]["torque_exponent"]
+    given = life["damage"]["torque_exponent"]
+    exponent = 0.5 * sum(given) if isinstance(given, list) else given  # gearboxes draw theirs: the middle
     wear, usual = (sum(h * ratio**exponent for h, ratio in own) / sum(h for h, _ in own) for own in histories)
     return float(wear / usual)
 

@@ -72,8 +72,8 @@ RATED_TEXT = AllowedText("a number above 0 up to 1e+06, or null")
 
 ACROSS = (
     "stiffness and damping across the shaft, 2 to 7 % of critical for shafts of 3 to 0.3 kg; {each: [horizontal, "
-    "vertical]} gives one for each direction; damping_time_s: damping over stiffness at any load, in place of the other "
-    f"one; {SIZED_TEXT}"
+    "vertical]} gives one for each direction; damping_time_s: damping over stiffness at any load, in place of the "
+    f"other one; {SIZED_TEXT}"
 )
 
 

@@ -15,7 +15,7 @@ from siggen.faults.registry import HEALTHY
 from siggen.gearbox.drivetrain import drawn_gears
 from siggen.gearbox.pair import gear_pair
 from siggen.keys.drawing import draw
-from siggen.keys.number import at
+from siggen.keys.number import at, constant
 from siggen.life.clock import Clock, LoadBlock
 from siggen.life.debris import counted_mg
 from siggen.life.flank import flanks
@@ -104,9 +104,10 @@ def lived(config: Config, nominal: GearsSection, specimen_id: int) -> Lived:
     point = config.operating_points[0]
     of_point = named_uniforms(config.seed, Stream.OPERATING_POINT, specimen_id, 0)
     steady = at(point.speed_hz, of_point("speed_hz")), at(point.torque_nm, of_point("torque_nm"))
-    clock = Clock(_blocks(life, *steady), life.damage.torque_exponent, at(life.scale, uniform("scale")))
+    law = draw(life.damage, uniform, "damage")
+    clock = Clock(_blocks(life, *steady), constant(law.torque_exponent), at(life.scale, uniform("scale")))
     share = at(FUNCTIONAL_SHARE, uniform("functional_share"))
-    course = life.damage.course(wearing, share)
+    course = law.course(wearing, share)
     ages_h, observed_h, event = _observed(life, uniform, clock.age_h(course.ends.functional))
     return Lived(course, wearing.named, clock, share, ages_h, observed_h, event)
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.faults.fault import Fault
+from siggen.keys.number import Number
 from siggen.keys.section import Section
 from siggen.life.flank import Flank
 from siggen.names import Side
@@ -108,7 +109,7 @@ class LifeCourse(Protocol):
 class Law(Section):
     """Base of the sections of laws; the field `kind` is a Literal of one word."""
 
-    torque_exponent: float
+    torque_exponent: Number
 
     @abstractmethod
     def course(self, wearing: Wearing, functional_share: float) -> LifeCourse:

@@ -17,6 +17,8 @@ from pydantic import Field
 from siggen.arrays import FloatArray
 from siggen.faults.listed import ListedPits
 from siggen.faults.listed_irregular import ListedIrregular
+from siggen.keys.distributions import Uniform
+from siggen.keys.number import Number, Within, constant
 from siggen.keys.section import Real
 from siggen.keys.usual import Usual
 from siggen.life.flank import Flank
@@ -55,8 +57,10 @@ class Pitting(Law):
     slope: Annotated[Real, Field(ge=0.5, le=100), Usual(0.5, 20)] = Field(
         default=2.5, description="Weibull slope of the first pit, of a tooth and of a gearbox"
     )
-    torque_exponent: Annotated[Real, Field(ge=0, le=20), Usual(1, 20)] = Field(
-        default=10.0, description="life falls with the torque to this power, until the first pit and after it"
+    torque_exponent: Annotated[Number, Within(least=0, most=20), Usual(1, 20)] = Field(
+        default=Uniform(low=4.3, high=8.8),
+        description="life falls with the torque to this power, until the first pit and after it; 4.3: load and life of "
+        "tested spur gears (NASA), 6.6 and 8.8: case-hardened flanks of ISO 6336-2 without pits and with some (memory)",
     )
     rate_sd: Annotated[Real, Field(ge=0, le=2), Usual(0.02, 2)] = Field(
         default=0.35, description="standard deviation of the rate's logarithm from pit to pit"
@@ -194,7 +198,7 @@ class PittingCourse:
 
         def shape(flank: Flank, number: int) -> PitShape:
             named = partial(_numbered, self.wearing.named, f"{flank.gear}/{number}")
-            return drawn_shape(flank, self.law.torque_exponent, named)
+            return drawn_shape(flank, constant(self.law.torque_exponent), named)
 
         return np.array([
             [through_share(shape(flank, number), flank.area_m2) for number in range(ANY_PITS)]
@@ -262,7 +266,7 @@ class PittingCourse:
         size, rate = named("growth").standard_normal(2).tolist()
         share = self._first_share(one.gear) * np.exp(FIRST_SHARE_SD * size)
         owner = one.tooth + own * self.wearing.flanks[0].teeth
-        shape = drawn_shape(flank, self.law.torque_exponent, named)
+        shape = drawn_shape(flank, constant(self.law.torque_exponent), named)
         return PitBirth(one, owner, float(share), float(RATE_PER_REV * np.exp(self.law.rate_sd * rate)), shape)
 
     def _named(self, one: Begun) -> Callable[[str], np.random.Generator]:

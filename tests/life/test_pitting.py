@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import expon, kstest
 
+from siggen.checks.loading import load_config
 from siggen.gears.stiffness.sections import union_area_m2
 from siggen.life import pitting
 from siggen.life.clock import Clock, LoadBlock
@@ -32,6 +33,20 @@ def test_with_slope_1_first_pits_of_gearboxes_are_exponential_with_the_mean_of_t
     times = [pit.time for pit in first_pits(1.0, 300)]
     # of right draws one test in a thousand fails; the seed is fixed
     assert kstest(times, expon(scale=6.9e6).cdf).pvalue > 1e-3
+
+
+def test_less_torque_lengthens_every_life_by_an_exponent_of_its_own_within_what_is_published() -> None:
+    full, less = (load_config("fleet", [f"operating_points.0.torque_nm={t}"]) for t in (162.7, 0.8 * 162.7))
+    exponents = []
+    for number in range(6):
+        ages = [one.clock.age_h(one.course.ends.functional) for one in (full.life(number), less.life(number))]
+        exponents.append(np.log(ages[1] / ages[0]) / np.log(1.0 / 0.8))
+    assert all(4.3 <= exponent <= 8.8 for exponent in exponents)
+    assert np.ptp(exponents) > 0.5
+    fixed = load_config("fleet", ["life.damage.torque_exponent=10", "operating_points.0.torque_nm=130.16"]).life(0)
+    given = load_config("fleet", ["life.damage.torque_exponent=10"]).life(0)
+    ages = [one.clock.age_h(one.course.ends.functional) for one in (given, fixed)]
+    assert ages[1] / ages[0] == pytest.approx(0.8**-10.0)
 
 
 def test_with_a_steep_slope_all_gearboxes_pit_at_one_age() -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 
 from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.keys.drawing import draw
+from siggen.keys.number import MIDDLE
 from siggen.life.flank import Flank, flanks
 from siggen.life.law import Wearing
 from siggen.life.pitting import Pitting, PittingCourse
@@ -31,4 +33,4 @@ def course(
 ) -> PittingCourse:
     """Return the life of a gearbox; the same unit has the same draws under any law."""
     wearing = Wearing(own, NOMINAL, lambda name: named_generator(7, Stream.LIFE, unit, name=name))
-    return (law or Pitting()).course(wearing, share)
+    return draw(law or Pitting(), lambda _: MIDDLE, "damage").course(wearing, share)
