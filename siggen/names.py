@@ -37,6 +37,8 @@ class Side(StrEnum):
         return Side.DRIVER if self is Side.DRIVEN else Side.DRIVEN
 
 
+MACHINES = {"motor": 0, "load": -1}
+"""What stands beside a gearbox, and the place of the shaft that leads there, in the order of power."""
 PINION, GEAR = SECTIONS = (Side.DRIVER.value, Side.DRIVEN.value)
 """What sections of the configuration call the gears of a mesh, and the shafts of a pair."""
 SHAFT_OF = {PINION: "driver", GEAR: "driven"}

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import pyarrow as pa
 
 from siggen.columns.of_parts import of_gear, of_shaft
-from siggen.gearbox.background import MACHINES
 from siggen.keys.column import Column, Role, in_role
+from siggen.names import MACHINES
 
 if TYPE_CHECKING:
     from siggen.gearbox.specimen import Specimen

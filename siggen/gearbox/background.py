@@ -24,11 +24,10 @@ from siggen.gearbox.background_numbers import (
 from siggen.keys.drawing import SomeSection, draw, in_si
 from siggen.keys.number import constant
 from siggen.keys.section import Section
+from siggen.names import MACHINES
 from siggen.seeding import Stream, named_uniforms
 
 T = TypeVar("T")
-MACHINES = {"motor": 0, "load": -1}
-"""What stands beside the gearbox, and the place of the shaft that leads there, in the order of power."""
 
 
 @dataclass(frozen=True, slots=True)

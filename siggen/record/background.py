@@ -15,8 +15,9 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.dynamics.drive.comb import Comb
 from siggen.dynamics.drive.drive import Rotation
-from siggen.gearbox.background import MACHINES, DrawnBackground, ForeignLevels, MachineLevels, ShaftLevels
+from siggen.gearbox.background import DrawnBackground, ForeignLevels, MachineLevels, ShaftLevels
 from siggen.gearbox.specimen import Specimen
+from siggen.names import MACHINES
 from siggen.planning.plan import PlannedRecord
 from siggen.record.background_course import BackgroundCourse, course_at
 from siggen.record.bearing_noise import BearingVelocities

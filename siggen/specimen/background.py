@@ -26,9 +26,10 @@ from siggen.dynamics.structure.gear_stage import Base
 from siggen.dynamics.structure.makers import on_base
 from siggen.dynamics.structure.structure import Structure
 from siggen.dynamics.time.transient import TRANSIENT_CAP_S
-from siggen.gearbox.background import MACHINES, DrawnBackground
+from siggen.gearbox.background import DrawnBackground
 from siggen.gearbox.specimen import Specimen
 from siggen.gears.geometry.gear_pair import GearPair
+from siggen.names import MACHINES
 from siggen.sensing.sensor_response import resonance_response
 from siggen.specimen.forced_ways import ChannelWay, Forcing, forced_ways
 from siggen.specimen.structure import linear_structure, linear_train

@@ -8,7 +8,14 @@ from siggen.checks.loading import load_config
 from tests.config.minimal import minimal
 
 HISTORY = [[1.0, 60.0, 30.0], [0.5, 0.0, 0.0], [1.5, 42.0, 20.0]]
-LIFE = {"reference_torque_nm": 60.0, "scale": 0.03, "interval_h": 1.2, "most": 6, "history": HISTORY}
+LIFE = {
+    "reference_torque_nm": 60.0,
+    "scale": 0.03,
+    "interval_h": 1.2,
+    "most": 6,
+    "history": HISTORY,
+    "damage": {"torque_exponent": 10.0},
+}
 
 
 def test_blocks_wear_and_turn_as_they_say_and_begin_again_after_the_last() -> None:

@@ -33,8 +33,8 @@ def lives(life: dict[str, Any] | None = None, **changes: Any) -> dict[str, Any]:
 def run(*arguments: str) -> str:
     """Return what a command says."""
     result = CliRunner().invoke(app, arguments)
-    assert result.exit_code == 0, result.stdout
-    return result.stdout
+    assert result.exit_code == 0, result.output
+    return result.output
 
 
 def rows(path: Path) -> list[dict[str, Any]]:
@@ -197,7 +197,7 @@ def test_plan_tells_a_schedule_that_sees_no_end(tmp_path: Path, life: dict[str, 
 
 def test_plan_tells_cpu_hours_in_proportion_to_records(tmp_path: Path) -> None:
     (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives({"history": [[0.5, 1.0], [0.5, 0.0]]}), sort_keys=False))
-    found = json.loads(run("plan", str(tmp_path / "lives.yaml"), "--json"))
+    found = json.loads(CliRunner().invoke(app, ["plan", str(tmp_path / "lives.yaml"), "--json"]).stdout)
     cost, pitted = found["cost"], round(found["records"] * found["life"]["pitted_inspections"])
     of_records = found["records"] * (cost["record_s"] + found["duration_s"] * cost["signal_s"])
     whole_s = 2 * cost["gearbox_s"] + of_records + pitted * cost["damage_s"]

@@ -74,7 +74,7 @@ def test_from_a_drawing_to_a_loaded_training_set(rig: Path) -> None:
 
 
 def test_from_a_set_to_scores_of_own_classifiers_beside_the_baselines(rig: Path, models: Path) -> None:
-    (rig / "tree.py").write_text(blocks()[0])
+    (rig / "tree.py").write_text(next(block for block in blocks() if "mine.parquet" in block))
     in_python = walk(rig, "python tree.py")
     assert walk(rig, "siggen-diagnostics score set mine.parquet") == in_python
     told = printed(rig, "siggen-diagnostics score set mine.parquet --baselines models --out scores.csv")["scores"]
