@@ -17,17 +17,17 @@ import numpy as np
 
 from benchmarks.random_gearbox import TEETH, drawn_numbers, random_config
 from benchmarks.row import Row, duration_text
-from siggen.dynamics.drive.drive import Drive
-from siggen.dynamics.time.motion import Motion
-from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
+from siggen.drivetrain.drive import Drive
 from siggen.errors import SolverFailure
 from siggen.gearbox.design import SetDesign
+from siggen.gearbox.plan import planned_record
 from siggen.gearbox.specimen import OperatingPoint, Specimen
-from siggen.planning.plan import planned_record
+from siggen.motion.motion import Motion
+from siggen.motion.response import Response, SampleGrid, Wanted, response_of
+from siggen.record.drive import RecordDrive, record_drive
+from siggen.record.motion import specimen_motion
 from siggen.record.specimen_state import SpecimenState, refused_as, specimen_state
-from siggen.specimen.drive import RecordDrive, record_drive
-from siggen.specimen.motion import specimen_motion
-from siggen.specimen.step_choice import stepped_motion
+from siggen.record.step_choice import stepped_motion
 
 GEARBOXES, FEW = 200, 6
 FIRST_STEPS, MOST_STEPS = 16, 256

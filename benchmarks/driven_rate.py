@@ -13,15 +13,13 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.compiled import entry
-from siggen.dynamics.mesh.mesh_force import MeshLaw
-from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.dynamics.time.equations import Equations, state_rate
-from siggen.dynamics.time.linear_motion import LinearMotion
-from siggen.dynamics.time.motion import Motion
-from siggen.dynamics.time.pair_equations import PairEquations
-from siggen.dynamics.time.pair_motion import PairMotion
-from siggen.dynamics.time.pair_rate import at_speed, pair_rate
+from siggen.mesh.mesh_force import MeshLaw
+from siggen.mesh.pair_law import PairLaw
+from siggen.mesh.pair_springs import pair_table
+from siggen.motion.equations import Equations, PairEquations, at_speed, pair_rate, state_rate
+from siggen.motion.linear_motion import LinearMotion
+from siggen.motion.motion import Motion
+from siggen.motion.pair_motion import PairMotion
 
 Rate = Callable[[float, FloatArray], FloatArray]
 

@@ -22,7 +22,7 @@ from siggen.columns.record import SimulatedRecord
 from siggen.columns.versions import SIMULATION_VERSION
 from siggen.errors import ConfigError
 from siggen.gearbox.design import SetDesign
-from siggen.planning.plan import planned_record
+from siggen.gearbox.plan import planned_record
 from siggen.sets.drawn import simulated
 
 KEPT = ROOT / "tests" / "golden.json"

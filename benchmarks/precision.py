@@ -16,8 +16,8 @@ from benchmarks.precision_case import Case, linear_case, precision_case, state_g
 from benchmarks.row import Row, duration_text
 from benchmarks.shipped import ROOT
 from benchmarks.work_precision import COMPILED, PLAIN, Point, equal_cost_s, steps_text, work_points
-from siggen.dynamics.time.exponential_motion import ExponentialMotion
-from siggen.dynamics.time.response import Response
+from siggen.motion.exponential_motion import ExponentialMotion
+from siggen.motion.response import Response
 
 PRESETS = (ROOT / "configs" / "quickstart.yaml", ROOT / "configs" / "bench.yaml")
 REFERENCE_STEPS = 32

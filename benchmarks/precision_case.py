@@ -10,16 +10,16 @@ import numpy as np
 
 from benchmarks.shipped import QUICKSTART, shipped
 from siggen.arrays import FloatArray
-from siggen.dynamics.time.equations import no_inputs
-from siggen.dynamics.time.motion import Motion
-from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
 from siggen.gearbox.design import SetDesign
+from siggen.gearbox.plan import planned_record
 from siggen.gearbox.specimen import OperatingPoint, Specimen
-from siggen.planning.plan import planned_record
+from siggen.motion.equations import no_inputs
+from siggen.motion.motion import Motion
+from siggen.motion.response import Response, SampleGrid, Wanted, response_of
+from siggen.record.drive import RecordDrive, record_drive
+from siggen.record.motion import specimen_motion
 from siggen.record.specimen_state import SpecimenState, specimen_state
-from siggen.specimen.drive import RecordDrive, record_drive
-from siggen.specimen.integration import TimeGrid, exponential_grid, rule_grid
-from siggen.specimen.motion import specimen_motion
+from siggen.record.step_choice import TimeGrid, exponential_grid, rule_grid
 
 SIGNAL_S, LOOP_S = 0.3, 1.0
 

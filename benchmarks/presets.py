@@ -12,7 +12,7 @@ from siggen.columns.record import SimulatedRecord, record_batch, record_schema
 from siggen.dataset.shard import table_draft
 from siggen.dataset.storage import LocalFolder
 from siggen.gearbox.design import SetDesign
-from siggen.planning.plan import planned_record, record_ids_of
+from siggen.gearbox.plan import planned_record, record_ids_of
 from siggen.record.stage_times import collected, stage
 from siggen.sets.drawn import set_columns, simulated
 

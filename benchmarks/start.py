@@ -18,7 +18,7 @@ from benchmarks.row import Row
 from siggen.errors import SolverFailure
 from siggen.gearbox.design import SetDesign
 from siggen.record.specimen_state import refused_as
-from siggen.specimen.step_choice import LEVELS, stepped_motion
+from siggen.record.step_choice import LEVELS, stepped_motion
 
 EARLIER = 9.0
 LABELLED = 0.1

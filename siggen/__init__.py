@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from siggen.checks.loading import load_config
     from siggen.dataset.reading import open
     from siggen.dataset.spreadsheet import write_csv
-    from siggen.gears.geometry.gear_pair import Gear, GearPair
+    from siggen.gearbox.plan import plan
+    from siggen.gears.gear_pair import Gear, GearPair
     from siggen.library.damage import BearingSpall, Chip, Crack, Damage, Pit, Spall, Wear, pits_in_layers, random_pits
     from siggen.library.gearbox import Case, Gearbox, Point, State, draw
     from siggen.library.machines import machine, planetary
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from siggen.library.record import LineOrders, Record, Spectrum
     from siggen.library.running import run, runs
     from siggen.library.sensors import Channel, Reading, Sensor
-    from siggen.planning.plan import plan
     from siggen.publication.publish import publish
     from siggen.sets.extension import extend
     from siggen.sets.generation import generate
@@ -42,7 +42,7 @@ _NAMES = {
     "siggen.checks.loading": "load_config",
     "siggen.dataset.reading": "open",
     "siggen.dataset.spreadsheet": "write_csv",
-    "siggen.gears.geometry.gear_pair": "Gear GearPair",
+    "siggen.gears.gear_pair": "Gear GearPair",
     "siggen.library.damage": "BearingSpall Chip Crack Damage Pit Spall Wear pits_in_layers random_pits",
     "siggen.library.gearbox": "Case Gearbox Point State draw",
     "siggen.library.machines": "machine planetary",
@@ -51,7 +51,7 @@ _NAMES = {
     "siggen.library.record": "LineOrders Record Spectrum",
     "siggen.library.running": "run runs",
     "siggen.library.sensors": "Channel Reading Sensor",
-    "siggen.planning.plan": "plan",
+    "siggen.gearbox.plan": "plan",
     "siggen.publication.publish": "publish",
     "siggen.sets.extension": "extend",
     "siggen.sets.generation": "generate",

@@ -26,7 +26,8 @@ from siggen.sources import sources_digest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 WITH_COMPILED_CODE = (
-    "*.py", "lanes/*.py", "dynamics/**/*.py", "gears/**/*.py", "life/continuation.py", "record/**/*.py",
+    "*.py", "lanes/*.py", "gears/*.py", "drivetrain/*.py", "damage/*.py", "mesh/*.py", "motion/*.py",
+    "life/continuation.py", "record/*.py",
     "sensing/**/*.py",
 )  # fmt: skip
 """Files that compiled code may come from, constants included."""

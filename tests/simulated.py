@@ -8,8 +8,8 @@ import pyarrow as pa
 
 from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.gearbox.design import SetDesign
+from siggen.gearbox.plan import PlannedRecord, planned_record
 from siggen.gearbox.specimen import Specimen
-from siggen.planning.plan import PlannedRecord, planned_record
 from siggen.record.internals import internals_table as internals_of
 from siggen.sets import drawn
 from siggen.sets.drawn import set_columns, simulated

@@ -76,7 +76,7 @@ def test_python_is_refused_by_a_function_for_compiled_code_alone() -> None:
 CALLED = "from siggen.compiled import njit\n\n@njit(cache=True)\ndef called(x):\n    return x + {added}\n"
 CALLER = """
 from siggen.compiled import entry, is_cached
-from siggen.dynamics.called import called
+from siggen.motion.called import called
 
 @entry(cache=True)
 def calling(x):
@@ -88,15 +88,15 @@ print(is_cached(calling), calling(1.0))
 
 def test_a_change_in_a_called_file_compiles_its_callers_again(tmp_path: Path) -> None:
     package = tmp_path / "siggen"
-    (package / "dynamics").mkdir(parents=True)
-    for empty in (package / "__init__.py", package / "dynamics" / "__init__.py"):
+    (package / "motion").mkdir(parents=True)
+    for empty in (package / "__init__.py", package / "motion" / "__init__.py"):
         empty.touch()
     for file in ("compiled.py", "errors.py", "sources.py"):
         (package / file).write_bytes(Path("siggen", file).read_bytes())
     (tmp_path / "caller.py").write_text(CALLER, encoding="utf-8")
 
     def said(added: float) -> str:
-        (package / "dynamics" / "called.py").write_text(CALLED.format(added=added), encoding="utf-8")
+        (package / "motion" / "called.py").write_text(CALLED.format(added=added), encoding="utf-8")
         environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
         command = [sys.executable, "-c", "import caller"]
         done = subprocess.run(command, env=environment, cwd=tmp_path, check=True, capture_output=True, text=True)

@@ -37,7 +37,7 @@ def test_a_wheel_and_a_checkout_of_the_same_sources_have_the_same_digest(install
 @pytest.mark.parametrize(
     ("file", "counts"),
     [
-        ("dynamics/time/runge_kutta.py", True),
+        ("motion/runge_kutta.py", True),
         ("config/config.py", True),
         ("record/simulation.py", True),
         ("seeding.py", True),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from siggen.config.state_keys import complete_states
+from siggen.config.states import complete_states
 
 
 def chosen_states(states: Mapping[str, Any], names: Collection[str]) -> dict[str, Any]:

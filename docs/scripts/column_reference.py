@@ -13,11 +13,11 @@ from pathlib import Path
 import pyarrow as pa
 
 import siggen
-from siggen.checks.quantity_names import available_quantities
-from siggen.columns.common_columns import HOUSING_COLUMNS
+from siggen.columns.labels import HOUSING_COLUMNS
 from siggen.columns.record import damage_schema, record_schema
 from siggen.names import PAIR as PAIR_NAMES
 from siggen.record.quantities import quantity_column
+from siggen.record.quantity_names import available_quantities
 from siggen.sets.drawn import set_columns
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"

@@ -119,7 +119,7 @@ def compare(config, overrides, samples=600, record=0, rtol=1e-6):
     """Return times [s], then approach [m], mesh force [N] and tilt [rad] of every mesh by siggen and by scipy."""
     from siggen.checks.loading import load_config
     from siggen.config import by_reference
-    from siggen.planning.plan import planned_record
+    from siggen.gearbox.plan import planned_record
     from siggen.record.internals import internals_table
     from siggen.views.exported_model import exported_model, write_model
 

@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from siggen.checks.loading import load_config
+from siggen.damage.part import pits_of
 from siggen.gearbox.design import SetDesign
-from siggen.gears.damage.tooth_damage import pits_of
-from siggen.gears.stiffness.sections import contact_length_loss
-from siggen.specimen.mesh_teeth import all_teeth
+from siggen.mesh.sections import contact_length_loss
+from siggen.record.teeth import all_teeth
 from siggen.views.flank_figure import save_flank_figure
 from siggen.views.flank_views import flank_damage_table, flank_views
 from siggen.views.stiffness_curves import StiffnessCurve, stiffness_curves

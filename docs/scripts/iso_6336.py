@@ -4,11 +4,11 @@ from math import cos, radians
 
 import numpy as np
 
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.geometry.spur_gear import transverse_gear
-from siggen.gears.stiffness.compliance import axial_part
-from siggen.gears.stiffness.mesh_stiffness import pair_stiffness, rolls_at
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.gears.gear_pair import GearPair, SpurGear
+from siggen.gears.spur_gear import transverse_gear
+from siggen.mesh.mesh_stiffness import pair_stiffness, rolls_at
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.tooth_compliance import axial_part
 
 MODULE_M, FACE_WIDTH_M, RADIUS_RATIO = 3e-3, 20e-3, 3.0
 LINE_LOAD_N_PER_M = 300e3

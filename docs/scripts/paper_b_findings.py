@@ -9,7 +9,7 @@ from matplotlib.ticker import NullFormatter
 
 from siggen.checks.loading import load_config
 from siggen.config import read_yaml
-from siggen.planning.plan import planned_record
+from siggen.gearbox.plan import planned_record
 from siggen.record.quantities import internal_quantities
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state

@@ -27,7 +27,7 @@ from chosen_states import chosen_states
 import siggen
 from diagnostics.signal.order_domain import AngleGrid, resample_to_angle
 from diagnostics.signal.shaft_angle import AGREEMENT, shaft_angle
-from siggen.checks.face_accuracy import covering_classes
+from siggen.checks.notes import covering_classes
 from siggen.config import inherited, parse_yaml
 from siggen.errors import UsageError
 from siggen.keys.merging import in_keys, merged

@@ -9,18 +9,18 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from siggen.dynamics.housing.layout import Contents
+from siggen.drivetrain.box import Contents
 from siggen.errors import Problem
-from siggen.gearbox.housing_layout import (
+from siggen.gearbox.housing import (
     ABOVE_SHARE,
     CLEARANCE_M,
+    PlateNumbers,
     end_for_bearings_m,
     height_for_bearings_m,
     specimen_layout,
 )
-from siggen.gearbox.housing_numbers import PlateNumbers
 from siggen.gearbox.possible import PossibleGearbox
-from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.gear_pair import GearPair
 from siggen.keys.number import HIGH, LOW, Number, bounds, constant
 from siggen.names import SHAFT_OF, Side
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from siggen.errors import Problem
-from siggen.gearbox.source import ConfigSource, parsed
+from siggen.gearbox.configured import ConfigSource, parsed
 
 if TYPE_CHECKING:
     from siggen.gearbox.design import SetDesign
@@ -42,11 +42,14 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     """
     written = ConfigSource.of(source, overrides)
     # They load the physics, which takes as long as all else: behind a file that is missing or no YAML.
-    from siggen.checks.density_files import with_density_files
-    from siggen.checks.mode_files import mode_problems, with_mode_file
-    from siggen.checks.physical_problems import physical_problems
-    from siggen.checks.response_files import response_problems, with_measured_responses
-    from siggen.checks.state_problems import state_problems
+    from siggen.checks.number_files import (
+        mode_problems,
+        response_problems,
+        with_density_files,
+        with_measured_responses,
+        with_mode_file,
+    )
+    from siggen.checks.physical_problems import physical_problems, state_problems
     from siggen.gearbox.design import SetDesign
     from siggen.gearbox.possible import PossibleGearbox
     from siggen.rig.sizes import with_sizes
@@ -62,7 +65,7 @@ def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str]
     told = [*written.emptied_pairs(), *form.problems, *unread, *unread_modes, *unusable, *unsized]
     problems = [*told, *_beyond(told, map(form.names.problem, of_physics))]
     if form.config is not None and not problems:
-        from siggen.checks.quantity_names import quantity_problems
+        from siggen.record.quantity_names import quantity_problems
 
         problems = quantity_problems(gearbox)
     if form.config is None or problems:

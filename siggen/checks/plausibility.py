@@ -13,18 +13,18 @@ from itertools import accumulate
 from math import pi, sqrt
 from operator import mul
 
-from siggen.dynamics.structure.steel_disc import STEEL_DENSITY_KG_M3, disc_inertia_kg_m2, disc_mass_kg
+from siggen.drivetrain.gear_stage import STEEL_DENSITY_KG_M3, disc_inertia_kg_m2, disc_mass_kg
 from siggen.errors import counted
 from siggen.gearbox.design import SetDesign
 from siggen.gearbox.mode_table import mode_table
-from siggen.gearbox.planetary import RIM_MODULES
+from siggen.gearbox.plan import SPLITS, split_of
 from siggen.gearbox.possible import PossibleGearbox
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.gearbox.train import RIM_MODULES
+from siggen.gears.gear_pair import GearPair
+from siggen.gears.spur_gear import SpurGear
 from siggen.keys.number import LOW, bounds
 from siggen.keys.usual import unusual
 from siggen.names import Side
-from siggen.planning.plan import SPLITS, split_of
 from siggen.sensors.sensor import SensorBase
 
 FORM_FACTOR = 2.5

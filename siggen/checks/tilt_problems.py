@@ -23,16 +23,16 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.bearings.loaded_bearing import loaded_bearing
-from siggen.dynamics.structure.gear_stage import Bearing, Shaft, cantilever_compliance_m_per_n
+from siggen.drivetrain.bearings import loaded_bearing
+from siggen.drivetrain.gear_stage import Bearing, Shaft, cantilever_compliance_m_per_n
 from siggen.errors import Problem
 from siggen.gearbox.possible import PossibleGearbox
-from siggen.gears.contact.table_columns import approach_under_m
-from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.gear_pair import GearPair
 from siggen.keys.drawing import Uniforms, corners
 from siggen.keys.number import MIDDLE
+from siggen.mesh.contact_table import approach_under_m
 from siggen.names import SHAFT_OF, Side
-from siggen.specimen.loaded_bearings import BEARINGS, on_loaded_bearing, shaft_load_n
+from siggen.record.structure import BEARINGS, on_loaded_bearing, shaft_load_n
 
 PLACES = (0.125, 0.375, 0.625, 0.875)
 """Equally likely places of a gear on its shaft."""

@@ -74,8 +74,8 @@ def init(
 
     Example: siggen init --teeth 25,56 --module 2 --speed 1450rpm --out rig.yaml
     """
-    from siggen.checks.face_accuracy import covering_classes
     from siggen.checks.loading import load_config
+    from siggen.checks.notes import covering_classes
     from siggen.checks.plausibility import implausible
     from siggen.config.expert_keys import schema_text
     from siggen.errors import UsageError

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from siggen.gearbox.design import SetDesign
-    from siggen.gearbox.lived import Lived
+    from siggen.gearbox.life import Lived
     from siggen.sets.record_cost import SetCost
 
 QUANTILES = (0.05, 0.5, 0.95)

@@ -16,7 +16,7 @@ from siggen.cli.working import working
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from siggen.dynamics.housing.box import Box
+    from siggen.drivetrain.box import Box
     from siggen.views.path_curves import PathCurves
 
 

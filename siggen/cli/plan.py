@@ -149,7 +149,7 @@ def _print_trial(console: Console, found: SetTrial | None) -> None:
 
 def plan_summary(design: SetDesign) -> dict[str, Any]:
     """Return counts, sizes and ranges of the set that a configuration describes, as JSON would hold them."""
-    from siggen.planning.plan import (
+    from siggen.gearbox.plan import (
         SPLITS,
         estimated_bytes,
         rows_per_group,
@@ -194,11 +194,16 @@ def plan_summary(design: SetDesign) -> dict[str, Any]:
 
 def _notes(design: SetDesign) -> dict[str, Any]:
     """Return how it varies, and what a user should know about it, in words."""
-    from siggen.checks.damage_notes import damage_notes, state_notes, torque_notes
+    from siggen.checks.notes import (
+        damage_notes,
+        reversal_notes,
+        shaft_notes,
+        size_notes,
+        state_notes,
+        torque_notes,
+        variation_notes,
+    )
     from siggen.checks.plausibility import implausible
-    from siggen.checks.shaft_notes import shaft_notes
-    from siggen.checks.size_notes import size_notes
-    from siggen.checks.variation_notes import reversal_notes, variation_notes
 
     gearbox = design.possible
     notes = {
@@ -227,7 +232,7 @@ def _of_every_pair(gearbox: PossibleGearbox, notes: Callable[[PossibleGearbox], 
 
 
 def _mesh_range_hz(config: Config) -> tuple[float, float]:
-    from siggen.config.planetary_problems import set_of
+    from siggen.config.planetary import set_of
     from siggen.keys.number import bounds
 
     speeds = [bounds(point.speed_hz) for point in config.operating_points]
@@ -240,7 +245,7 @@ def _mesh_range_hz(config: Config) -> tuple[float, float]:
 
 def _stage_ranges_hz(config: Config) -> dict[str, tuple[float, float]]:
     """Return the mesh frequencies of the further stages by name."""
-    from siggen.config.stages import turned_teeth
+    from siggen.config.machine import turned_teeth
 
     first, ends = config.gears.pinion.teeth, _mesh_range_hz(config)
     return {

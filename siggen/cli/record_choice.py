@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from siggen.gearbox.design import SetDesign
+    from siggen.gearbox.plan import PlannedRecord
     from siggen.gearbox.specimen import Specimen
-    from siggen.planning.plan import PlannedRecord
 
 
 def chosen_record(source: Path, record: int, overrides: Sequence[str]) -> tuple[SetDesign, Specimen, PlannedRecord]:
@@ -22,7 +22,7 @@ def chosen_record(source: Path, record: int, overrides: Sequence[str]) -> tuple[
     """
     from siggen.checks.loading import load_config
     from siggen.errors import UsageError, counted
-    from siggen.planning.plan import planned_record, record_ids_of
+    from siggen.gearbox.plan import planned_record, record_ids_of
 
     design = load_config(source / "config.yaml" if source.is_dir() else source, overrides)
     count = design.specimens * design.records_per_specimen

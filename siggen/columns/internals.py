@@ -8,10 +8,10 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.columns.record import ID_COLUMNS, SetColumns, SimulatedRecord, record_value, schema_metadata, signal_array
-from siggen.dynamics.mesh.contact_names import PAIR_PREFIX, is_of_contact_alone
 from siggen.errors import DatasetError
+from siggen.gearbox.plan import GROUP_BYTES, GROUP_CHANNEL_BYTES
 from siggen.keys.column import Column, list_of
-from siggen.planning.plan import GROUP_BYTES, GROUP_CHANNEL_BYTES
+from siggen.mesh.contact_names import PAIR_PREFIX, is_of_contact_alone
 
 
 def internals_schema(columns: SetColumns) -> pa.Schema:

@@ -9,21 +9,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 
-from siggen.columns.background_columns import background_columns
-from siggen.columns.channel_columns import channel_columns
-from siggen.columns.common_columns import common_columns
-from siggen.columns.damage_columns import damage_columns
+from siggen.columns.damage import damage_columns
 from siggen.columns.drivetrain import GearTrain, gear_train
+from siggen.columns.labels import background_columns, channel_columns, common_columns
 from siggen.columns.versions import SCHEMA_VERSION
-from siggen.dynamics.mesh.contact_names import is_of_contact_alone
 from siggen.errors import DatasetError, counted
 from siggen.keys.column import Column, Role, in_role, list_of
+from siggen.mesh.contact_names import is_of_contact_alone
 from siggen.sensing.measurement import converter_step
 
 if TYPE_CHECKING:
-    from siggen.dynamics.time.sampling import Sampling
+    from siggen.gearbox.plan import PlannedRecord
     from siggen.gearbox.specimen import Specimen
-    from siggen.planning.plan import PlannedRecord
+    from siggen.motion.response import Sampling
 
 BEFORE_QUANTITIES = "acceleration"
 """What channels hold in a set whose files do not say so."""

@@ -14,6 +14,8 @@ from siggen.config.config import BLOCK, Config, OperatingRange, Splits
 from siggen.config.dynamics import (
     CouplingSection,
     Dynamics,
+    Friction,
+    MeshSection,
     RotorSection,
     Shafts,
     ShaftSection,
@@ -26,13 +28,12 @@ from siggen.config.housing import BoltsSection, Housing, ModalHousing, PlateHous
 from siggen.config.inheritance import extended_files, inherited
 from siggen.config.internals import Internals
 from siggen.config.key_lines import placed
+from siggen.config.machine import Stage
 from siggen.config.manufacture import Manufacture
-from siggen.config.mesh import Friction, MeshSection
 from siggen.config.overrides import apply_overrides
 from siggen.config.parsing import ParsedConfig, parse
 from siggen.config.planetary import Planetary
 from siggen.config.presets import config_file
-from siggen.config.stages import Stage
 from siggen.config.states import StateSection
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import SpeedVariation, TorqueVariationSection, Variation

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import BeforeValidator, PlainSerializer, ValidationError, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from siggen.config.short_form import drivetrain
+from siggen.config.machine import drivetrain
 from siggen.errors import Problem
 from siggen.keys.distributions import DRAWN, Changed
 from siggen.keys.distributions import WORDS as WORDS_OF_NUMBERS

@@ -18,16 +18,14 @@ from siggen.config.gears import GearsSection
 from siggen.config.housing import Housing, PlateHousing, RigidHousing
 from siggen.config.internals import Internals
 from siggen.config.life import Life
-from siggen.config.machine import MachineSection
+from siggen.config.machine import MachineSection, Stage, names_in, stages_of, without_inner
 from siggen.config.manufacture import Manufacture
 from siggen.config.planetary import Planetary
-from siggen.config.short_form import names_in, stages_of, without_inner
-from siggen.config.stages import Stage
 from siggen.config.states import StateSection, changes_of, grown_from
 from siggen.config.stiffness import Stiffness
 from siggen.config.variation import Variation
+from siggen.damage.fault import Fault
 from siggen.errors import Problem
-from siggen.faults.fault import Fault
 from siggen.keys.by_name import ByName, written_by_name
 from siggen.keys.merging import in_keys
 from siggen.keys.number import Number, Within, bounds

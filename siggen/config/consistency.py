@@ -11,15 +11,13 @@ from typing import Any
 
 from siggen.config.helical_limits import helical_problems
 from siggen.config.housing import ModalHousing, PlateHousing
-from siggen.config.life_problems import life_problems
-from siggen.config.planetary_problems import sets_problems
-from siggen.config.short_form import names_in, stages_of
-from siggen.config.stage_problems import most_teeth_per_turn, pair_of, stage_problems
-from siggen.config.stages import shaft_orders
+from siggen.config.life import life_problems
+from siggen.config.machine import most_teeth_per_turn, names_in, pair_of, shaft_orders, stage_problems, stages_of
+from siggen.config.planetary import sets_problems
 from siggen.config.states import SEVERITIES, StateSection
+from siggen.damage.fault import Fault
+from siggen.damage.registry import COMBINED, HEALTHY, kinds_called
 from siggen.errors import Problem
-from siggen.faults.fault import Fault
-from siggen.faults.registry import COMBINED, HEALTHY, kinds_called
 from siggen.keys.by_name import BY_NAME, named_entries
 from siggen.keys.number import bounds
 from siggen.keys.problems import nearest

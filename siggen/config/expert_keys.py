@@ -11,7 +11,7 @@ from siggen.config.inheritance import EXTENDS, inherited
 from siggen.config.parsing import parse
 from siggen.config.presets import presets
 from siggen.config.states import StateSection
-from siggen.faults.kinds import KINDS
+from siggen.damage.kinds import KINDS
 from siggen.keys.distributions import is_written_number
 from siggen.keys.section import Section
 from siggen.keys.yaml_source import read_yaml

@@ -13,9 +13,8 @@ from pydantic import TypeAdapter, ValidationError
 from siggen.config.config import Config
 from siggen.config.consistency import consistency_problems
 from siggen.config.inheritance import REPLACED
-from siggen.config.machine_problems import machine_problems
-from siggen.config.short_form import drivetrain, names_of, problems_beside
-from siggen.config.state_keys import complete_states, source_of
+from siggen.config.machine import drivetrain, machine_problems, names_of, problems_beside
+from siggen.config.states import complete_states, source_of
 from siggen.errors import Problem
 from siggen.keys.by_name import BY_NAME, NO_NAME, named_entries, refused_list
 from siggen.keys.problems import (

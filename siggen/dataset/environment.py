@@ -22,12 +22,10 @@ MAKES_RECORDS = (
         "uniform_spline.py",
         "lanes/**/*.py",
         "keys/**/*.py",
-        "faults/**/*.py",
     ),
     *("noise/**/*.py", "sensors/**/*.py", "life/**/*.py", "config/**/*.py", "rig/**/*.py"),
-    *("gearbox/**/*.py", "planning/**/*.py", "checks/quantity_names.py"),
-    *("gears/**/*.py", "dynamics/**/*.py", "sensing/**/*.py", "specimen/**/*.py"),
-    *("columns/**/*.py", "record/**/*.py"),
+    *("gears/**/*.py", "drivetrain/**/*.py", "damage/**/*.py", "mesh/**/*.py", "motion/**/*.py", "sensing/**/*.py"),
+    *("gearbox/**/*.py", "columns/**/*.py", "record/**/*.py"),
     "dataset/chunk.py",
 )
 """Sources that can change a record of a configuration. What checks a configuration, writes files, distributes tasks or

@@ -14,7 +14,7 @@ from operator import itemgetter
 
 import pyarrow as pa
 
-from siggen.columns.life_columns import LIFE_TABLES, NULLABLE
+from siggen.columns.life import LIFE_TABLES, NULLABLE
 from siggen.columns.record import SetColumns, damage_schema, label_schema, schema_metadata
 from siggen.dataset.checked_file import parquet_file
 from siggen.dataset.chunk import packed_batch, unpacked_batch

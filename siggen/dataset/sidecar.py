@@ -20,7 +20,7 @@ from siggen.dataset.storage import Storage
 from siggen.errors import DatasetError, VerificationError
 
 if TYPE_CHECKING:
-    from siggen.planning.plan import ShardPlan
+    from siggen.gearbox.plan import ShardPlan
 
 
 @dataclass(frozen=True, slots=True)

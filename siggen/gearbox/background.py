@@ -11,7 +11,7 @@ from math import pi
 from typing import TypeVar
 
 from siggen.config import Config
-from siggen.dynamics.structure.gear_stage import Base
+from siggen.drivetrain.gear_stage import Base
 from siggen.gearbox.background_numbers import (
     BaseNumbers,
     BearingNumbers,

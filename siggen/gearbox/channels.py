@@ -13,8 +13,8 @@ from siggen.config import Config
 from siggen.keys.number import Number, constant
 from siggen.noise.source import Source
 from siggen.seeding import Stream, named_generator, named_uniforms
-from siggen.sensing.frequency_response import FrequencyResponse
 from siggen.sensing.inputs import FORCE, Input
+from siggen.sensing.responses import FrequencyResponse
 from siggen.sensors.path import MeasuredPath
 from siggen.sensors.quantity import Quantity
 from siggen.sensors.response_text import decoded_response

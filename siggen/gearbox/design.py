@@ -12,13 +12,12 @@ from typing import Any, NamedTuple
 
 from siggen.config import Config, by_reference, parse
 from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS, carried_mesh_harmonics
-from siggen.config.stage_problems import most_teeth_per_turn
-from siggen.config.stages import shaft_orders
+from siggen.config.machine import most_teeth_per_turn, shaft_orders
+from siggen.damage.fault import Fault
 from siggen.errors import ConfigError, UsageError
-from siggen.faults.fault import Fault
 from siggen.gearbox.configured import gearbox_config, gearbox_life, inspection_count, pair_of
 from siggen.gearbox.draw import draw_operating_point, draw_specimen
-from siggen.gearbox.lived import Lived
+from siggen.gearbox.life import Lived
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.keys.number import Number, bounds

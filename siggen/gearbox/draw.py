@@ -8,10 +8,8 @@ from math import radians
 
 from siggen.config import Config, Dynamics, GearsSection, Planetary, RotorSection
 from siggen.config.config import rated_nm
-from siggen.config.planetary import RING
-from siggen.config.planetary_problems import set_of
-from siggen.config.stages import Stage, turned
-from siggen.dynamics.time.sampling import Sampling
+from siggen.config.machine import Stage, turned
+from siggen.config.planetary import RING, set_of
 from siggen.gearbox.background import drawn_background
 from siggen.gearbox.channels import drawn_channels
 from siggen.gearbox.configured import gearbox_config, gearbox_life, state_config
@@ -19,16 +17,21 @@ from siggen.gearbox.drive import drawn_unbalance, drawn_variation
 from siggen.gearbox.drivetrain import drawn_dynamics, drawn_gears
 from siggen.gearbox.housing import drawn_housing
 from siggen.gearbox.labels import gearbox_labels, state_labels
-from siggen.gearbox.pair import gear_pair, stiffness_options
-from siggen.gearbox.planetary import planetary_stage, planetary_teeth
 from siggen.gearbox.specimen import DrawnState, OperatingPoint, PairTrain, PlanetaryGears, Specimen, ToothMesh
-from siggen.gearbox.teeth import Drawing, draw_teeth, mesh_seed, on_one_body
-from siggen.gearbox.tooth_law import tooth_law
-from siggen.gearbox.train import ball_bearings, bending_shafts, gear_stage, next_stages
-from siggen.gears.geometry.idler import idler_later_rad
-from siggen.gears.geometry.internal_pair import ring_round
+from siggen.gearbox.teeth import Drawing, draw_teeth, gear_pair, mesh_seed, on_one_body, stiffness_options, tooth_law
+from siggen.gearbox.train import (
+    ball_bearings,
+    bending_shafts,
+    gear_stage,
+    next_stages,
+    planetary_stage,
+    planetary_teeth,
+)
+from siggen.gears.gear_pair import idler_later_rad
+from siggen.gears.planetary import ring_round
 from siggen.keys.drawing import draw
 from siggen.keys.number import at, constant
+from siggen.motion.response import Sampling
 from siggen.seeding import Stream, named_generator, named_uniforms
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import pi
 
 from siggen.config import Dynamics, Variation
-from siggen.dynamics.drive.torque_variation import TorqueSettings
+from siggen.drivetrain.varying_drive import TorqueSettings
 from siggen.keys.drawing import draw, in_si
 from siggen.keys.number import constant
 from siggen.names import Names

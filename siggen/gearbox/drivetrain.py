@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from siggen.config import Config, Dynamics, GearsSection
-from siggen.config.short_form import drivetrain
-from siggen.config.stages import Stage, with_idlers
+from siggen.config.machine import Stage, drivetrain, with_idlers
 from siggen.keys.drawing import draw
 from siggen.seeding import Stream, named_uniforms
 

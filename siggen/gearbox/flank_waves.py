@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from siggen.gears.errors.error_shapes import Draws
-from siggen.gears.errors.flank_waves import ORDERS
-from siggen.gears.errors.flank_waves import FlankWaves as DrawnWaves
-from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.errors import Draws
+from siggen.gears.flank_waves import ORDERS
+from siggen.gears.flank_waves import FlankWaves as DrawnWaves
+from siggen.gears.gear_pair import GearPair
 from siggen.keys.distributions import LogUniform, Uniform
 from siggen.names import Side
 from siggen.seeding import Stream, named_generator

@@ -10,7 +10,7 @@ import pyarrow as pa
 
 from siggen.config import Config
 from siggen.gearbox.configured import drawn_bearings, pair_of
-from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.gear_pair import GearPair
 from siggen.keys.column import MICROMETRE, MILLIMETRE, Column, Role, in_role, list_of
 from siggen.keys.number import constant
 from siggen.sensors.sensor import SensorBase

@@ -14,15 +14,14 @@ from typing import TypeAlias
 from pydantic import TypeAdapter, ValidationError
 
 from siggen.config import Config, StateSection
+from siggen.damage.fault import Fault
+from siggen.damage.flank_wear import LoadAtRest
+from siggen.damage.growth import Growth
+from siggen.damage.on_flank import takes_from_flanks, with_outlines
+from siggen.damage.part import Part, Parts, goes_through
+from siggen.damage.registry import DamageSections
 from siggen.errors import ConfigError
-from siggen.faults.fault import Fault
-from siggen.faults.growth import Growth
-from siggen.faults.registry import DamageSections
-from siggen.gears.damage.flank_loss import takes_from_flanks, with_outlines
-from siggen.gears.damage.part import Part, Parts
-from siggen.gears.damage.tooth_damage import goes_through
-from siggen.gears.damage.wear import LoadAtRest
-from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.gear_pair import GearPair
 from siggen.keys.problems import section_problems
 from siggen.names import EITHER, Names
 

@@ -21,8 +21,8 @@ from itertools import pairwise
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.housing.modes import VIBRATING_HZ
-from siggen.dynamics.structure.makers import SEATS_OF_SET
+from siggen.drivetrain.housing_modes import VIBRATING_HZ
+from siggen.drivetrain.makers import SEATS_OF_SET
 from siggen.keys.data_file import DataRefusal
 from siggen.keys.problems import nearest
 from siggen.names import PAIR, Names

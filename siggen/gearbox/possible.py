@@ -11,25 +11,24 @@ from siggen.config import Config, Dynamics, PlateHousing, Shafts
 from siggen.config.changes import SECTIONS, changed_sections
 from siggen.config.config import rated_nm
 from siggen.config.consistency import consistency_problems
-from siggen.config.stages import turned
-from siggen.dynamics.bearings.ball_bearing import BallBearing
-from siggen.dynamics.mesh.tooth_law import ToothLaw
-from siggen.dynamics.structure.gear_stage import Rotor, Shaft
+from siggen.config.machine import turned
+from siggen.damage.ball_geometry import BallGeometry
+from siggen.damage.fault import Fault
+from siggen.drivetrain.bearings import BallBearing
+from siggen.drivetrain.gear_stage import Rotor, Shaft
 from siggen.errors import Problem
-from siggen.faults.ball_geometry import BallGeometry
-from siggen.faults.fault import Fault
 from siggen.gearbox.configured import pair_configs, possible_damages
-from siggen.gearbox.housing_numbers import PlateNumbers, plate_numbers
+from siggen.gearbox.housing import PlateNumbers, plate_numbers
 from siggen.gearbox.mesh_damage import on_mesh
-from siggen.gearbox.pair import gear_pair, stiffness_options
-from siggen.gearbox.tooth_law import tooth_law
+from siggen.gearbox.teeth import gear_pair, stiffness_options, tooth_law
 from siggen.gearbox.train import rotor_numbers, shaft_numbers
-from siggen.gears.geometry.gear_pair import GearPair, GeometryProblem, geometry_problems
-from siggen.gears.geometry.internal_pair import InternalPair, internal_problems, ring_round
-from siggen.gears.stiffness.stiffness_notes import stiffness_notes
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.gears.gear_pair import GearPair, GeometryProblem, geometry_problems
+from siggen.gears.planetary import InternalPair, internal_problems, ring_round
 from siggen.keys.drawing import Uniforms, corners, draw
 from siggen.keys.number import HIGH, MIDDLE, at, bounds
+from siggen.mesh.stiffness_notes import stiffness_notes
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.tooth_law import ToothLaw
 from siggen.names import SHAFT_OF, MeshName, Side
 from siggen.rig.sizes import possible_sizes, sized
 

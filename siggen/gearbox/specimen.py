@@ -8,21 +8,20 @@ from fractions import Fraction
 from math import lcm
 
 from siggen.config.internals import ALL
-from siggen.dynamics.bearings.ball_bearing import BallBearing
-from siggen.dynamics.mesh.tooth_law import ToothLaw
-from siggen.dynamics.structure.gear_stage import GearStage, NextStage, PlanetaryStage, Shaft
-from siggen.dynamics.time.sampling import Sampling
-from siggen.faults.fault import Fault
+from siggen.damage.fault import Fault
+from siggen.drivetrain.bearings import BallBearing
+from siggen.drivetrain.gear_stage import GearStage, NextStage, PlanetaryStage, Shaft
 from siggen.gearbox.background import DrawnBackground
 from siggen.gearbox.channels import DrawnChannel
 from siggen.gearbox.drive import PointVariation, UnbalanceLevels
 from siggen.gearbox.housing import Block, Housing, Plates
 from siggen.gearbox.labels import Labels
-from siggen.gearbox.lived import Lived
+from siggen.gearbox.life import Lived
 from siggen.gearbox.teeth import Teeth
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.internal_pair import InternalPair
-from siggen.gears.geometry.planetary import PlanetarySet
+from siggen.gears.gear_pair import GearPair
+from siggen.gears.planetary import InternalPair, PlanetarySet
+from siggen.mesh.tooth_law import ToothLaw
+from siggen.motion.response import Sampling
 from siggen.names import Names, Side
 
 

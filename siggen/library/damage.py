@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.gears.damage.crack_law import DEEPEST_SHARE
-from siggen.gears.damage.layouts import clustered_centres, layered_centres
-from siggen.gears.geometry.gear_pair import Gear, GearPair
-from siggen.gears.geometry.root_chord import root_chord
+from siggen.damage.crack_law import DEEPEST_SHARE
+from siggen.damage.pits import clustered_centres, layered_centres
+from siggen.gears.gear_pair import Gear, GearPair
+from siggen.gears.spur_gear import root_chord
 from siggen.library.arguments import finite, of_kind, refused
 from siggen.names import PINION, Side
 from siggen.seeding import Stream, generator

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from siggen.checks.face_accuracy import covering_classes
+from siggen.checks.notes import covering_classes
 from siggen.errors import UsageError
-from siggen.gearbox.source import preset
+from siggen.gearbox.configured import preset
 from siggen.library.arguments import finite, refused, saying
 from siggen.library.gearbox import Gearbox
 from siggen.library.makers import counts, made

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, TypeVar
 
-from siggen.checks.face_accuracy import covering_classes
 from siggen.checks.loading import load_config
+from siggen.checks.notes import covering_classes
 from siggen.keys.yaml_source import parse_yaml
 from siggen.library.arguments import finite, refused, saying
 from siggen.library.gearbox import Gearbox, draw

@@ -11,29 +11,28 @@ from typing import Any
 import numpy as np
 
 from siggen.arrays import FloatArray
+from siggen.damage.growth import Growth
+from siggen.damage.heights import flank_heights
+from siggen.damage.lost_shape import POINTS, LostShape
+from siggen.damage.on_flank import with_outlines
+from siggen.damage.part import Parts, on_teeth, pits_of
 from siggen.errors import ConfigError, Problem
-from siggen.faults.growth import Growth
 from siggen.gearbox.mesh_damage import damage_sections
-from siggen.gearbox.tooth_law import typical_tooth_law
-from siggen.gears.damage.flank_loss import with_outlines
-from siggen.gears.damage.heights import flank_heights
-from siggen.gears.damage.lost_shape import POINTS, LostShape
-from siggen.gears.damage.part import Parts
-from siggen.gears.damage.tooth_damage import on_teeth, pits_of
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness as by_potential_energy
-from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
-from siggen.gears.stiffness.stiffness_options import TOOTH_MODELS, StiffnessOptions
+from siggen.gearbox.teeth import typical_tooth_law
+from siggen.gears.gear_pair import GearPair
 from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.axes import drawing, legend_above, new_axes
 from siggen.library.damage import Damage, DamagedPlace, all_damages, entries
 from siggen.library.gearbox import Gearbox
 from siggen.library.shape_fault import ShapeFault
+from siggen.mesh.mesh_stiffness import mesh_stiffness as by_potential_energy
+from siggen.mesh.mesh_tables import TABLE_POINTS
+from siggen.mesh.stiffness_options import TOOTH_MODELS, StiffnessOptions
 from siggen.names import SECTIONS, Side
+from siggen.record.contact import tooth_tables
+from siggen.record.static_mesh import static_mesh
+from siggen.record.teeth import load_at_rest
 from siggen.rig.rating import bearable_torque_nm, rated_torque_nm
-from siggen.specimen.contact import tooth_tables
-from siggen.specimen.static_mesh import static_mesh
-from siggen.specimen.worn_loads import load_at_rest
 from siggen.views.chosen_mesh import chosen_mesh
 from siggen.views.flank_figure import draw_flank
 from siggen.views.flank_views import flank_view

@@ -13,11 +13,11 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.errors import SolverFailure
 from siggen.gearbox.design import SetDesign
+from siggen.gearbox.plan import PlannedRecord
 from siggen.gearbox.specimen import Specimen
 from siggen.library.arguments import finite, of_kind, one_of, refused, saying
 from siggen.library.gearbox import Case, Gearbox, Point
 from siggen.library.record import LineOrders, Record
-from siggen.planning.plan import PlannedRecord
 from siggen.record.simulation import simulate_specimen
 from siggen.rig.rating import bearable_torque_nm
 

@@ -8,12 +8,12 @@ from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
+from siggen.damage.fault import Fault, HitTeeth
+from siggen.damage.growth import Growth
+from siggen.damage.lost_shape import LostShape
+from siggen.damage.part import Parts
 from siggen.errors import Problem
-from siggen.faults.fault import Fault, HitTeeth
-from siggen.faults.growth import Growth
-from siggen.gears.damage.lost_shape import LostShape
-from siggen.gears.damage.part import Parts
-from siggen.gears.geometry.gear_pair import Gear, GearPair
+from siggen.gears.gear_pair import Gear, GearPair
 from siggen.library.damage import Damage
 from siggen.names import Side
 

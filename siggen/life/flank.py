@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.gears.geometry.contact_zones import contact_zones
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.stiffness.damage_summary import flank_arc_m
+from siggen.gears.gear_pair import GearPair, contact_zones
+from siggen.mesh.damage_summary import flank_arc_m
 from siggen.names import Side
 
 PLACES = 65

@@ -16,7 +16,7 @@ from typing import Protocol
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.faults.fault import Fault
+from siggen.damage.fault import Fault
 from siggen.keys.number import Number
 from siggen.keys.section import Section
 from siggen.life.flank import Flank

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.gears.damage.irregular import drawn_waves
+from siggen.damage.irregular import drawn_waves
 from siggen.life.flank import Flank
 
 FIRST_STATION, STATION_RATIO = 0.01, 1.3

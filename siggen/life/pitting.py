@@ -15,8 +15,8 @@ import numpy as np
 from pydantic import Field
 
 from siggen.arrays import FloatArray
-from siggen.faults.listed import ListedPits
-from siggen.faults.listed_irregular import ListedIrregular
+from siggen.damage.irregular import ListedIrregular
+from siggen.damage.pits import ListedPits
 from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, Within, constant
 from siggen.keys.section import Real

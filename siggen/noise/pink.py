@@ -10,7 +10,7 @@ from siggen.arrays import FloatArray
 from siggen.keys.number import Number, Within, at
 from siggen.keys.usual import Usual
 from siggen.noise.source import Draws, NoisePart, NoisyChannel, Source
-from siggen.sensing.pink_noise import PinkStream
+from siggen.sensing.noise import PinkStream
 
 PINK_HZ = 100.0
 """Where the density is given, about where it meets the white noise of accelerometers (assumed)."""

@@ -16,7 +16,7 @@ import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.keys.section import Section
-from siggen.sensing.spread import Spread
+from siggen.sensing.measurement import Spread
 
 
 @dataclass(frozen=True, slots=True)

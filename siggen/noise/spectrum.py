@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.drive.comb import harmonic_sum, turns_of
+from siggen.drivetrain.comb import harmonic_sum, turns_of
 from siggen.errors import Problem
 from siggen.keys.distributions import Uniform
 from siggen.keys.number import Number, Within, at
@@ -18,10 +18,9 @@ from siggen.keys.problems import refusal
 from siggen.keys.section import Real, Section
 from siggen.names import Side
 from siggen.noise.source import Draws, MeasuredPart, NoisePart, NoisyChannel, Source
-from siggen.sensing.force_density import tabulated
 from siggen.sensing.modulation import SHAFT_LINES, LevelCourse, shaft_course, shaft_phasors
-from siggen.sensing.sensor_response import high_pass_response
-from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
+from siggen.sensing.noise import ShapedNoise, shape_taps, tabulated
+from siggen.sensing.responses import high_pass_response
 
 
 class Density(Section):

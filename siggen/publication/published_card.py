@@ -8,8 +8,8 @@ from typing import Any
 import yaml
 
 from siggen.errors import DatasetError
+from siggen.gearbox.description import assumed_numbers_section, physics_section
 from siggen.gearbox.design import SetDesign
-from siggen.gearbox.physics_sections import assumed_numbers_section, physics_section
 from siggen.publication.publication_facts import PublicationFacts
 
 BEFORE = "\n## Columns of `data/`"

@@ -13,20 +13,18 @@ from math import pi
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.drive.comb import Comb
-from siggen.dynamics.drive.drive import Rotation
+from siggen.drivetrain.comb import Comb
+from siggen.drivetrain.drive import Rotation
 from siggen.gearbox.background import DrawnBackground, ForeignLevels, MachineLevels, ShaftLevels
+from siggen.gearbox.plan import PlannedRecord
 from siggen.gearbox.specimen import Specimen
 from siggen.names import MACHINES
-from siggen.planning.plan import PlannedRecord
 from siggen.record.background_course import BackgroundCourse, course_at
 from siggen.record.bearing_noise import BearingVelocities
-from siggen.record.rubbing import RubbingForce
-from siggen.record.set_rubbing import SetRubbing
-from siggen.sensing.force_density import contact_filter, rising_floor
+from siggen.record.forced_ways import AXES
+from siggen.record.rubbing import RubbingForce, SetRubbing
 from siggen.sensing.inputs import BACKGROUND, Input
-from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
-from siggen.specimen.background import AXES
+from siggen.sensing.noise import ShapedNoise, contact_filter, rising_floor, shape_taps
 
 FOREIGN_LINES = 15
 """Lines of another mesh (measured)."""

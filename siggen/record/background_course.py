@@ -10,16 +10,16 @@ from math import pi
 import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
-from siggen.dynamics.drive.comb import harmonic_sum, turns_of
-from siggen.dynamics.drive.drive import Rotation
-from siggen.dynamics.time.transient import TRANSIENT_CAP_S
+from siggen.drivetrain.comb import harmonic_sum, turns_of
+from siggen.drivetrain.drive import Rotation
+from siggen.gearbox.plan import PlannedRecord
 from siggen.gearbox.specimen import OperatingPoint, Specimen
-from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.gear_pair import GearPair
+from siggen.motion.motion import TRANSIENT_CAP_S
 from siggen.names import Side
-from siggen.planning.plan import PlannedRecord
+from siggen.record.friction import asperity_share
 from siggen.seeding import Stream, named_generator, named_uniforms
 from siggen.sensing.modulation import SHAFT_LINES, shaft_phasors
-from siggen.specimen.asperities import asperity_share
 
 
 @dataclass(frozen=True, slots=True)

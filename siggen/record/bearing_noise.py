@@ -17,17 +17,15 @@ from math import pi, sqrt
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.bearings.loaded_bearing import LoadedBearing
-from siggen.dynamics.drive.comb import Comb, harmonic_sum
+from siggen.drivetrain.bearings import LoadedBearing
+from siggen.drivetrain.comb import Comb, harmonic_sum
 from siggen.gearbox.background import BearingLevels
 from siggen.gearbox.specimen import Specimen
 from siggen.names import ShaftName
 from siggen.record.background_course import BackgroundCourse
-from siggen.sensing.force_density import tabulated
+from siggen.record.structure import BEARINGS, cage_sense, specimen_bearings
 from siggen.sensing.modulation import LevelCourse, shaft_course
-from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
-from siggen.specimen.loaded_bearings import BEARINGS, cage_sense
-from siggen.specimen.structure import specimen_bearings
+from siggen.sensing.noise import ShapedNoise, shape_taps, tabulated
 
 CLASS_SPEED_HZ = 30.0
 BAND_EDGES_HZ = (50.0, 300.0, 1800.0, 10_000.0)

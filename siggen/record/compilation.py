@@ -43,7 +43,7 @@ class CompilationPart:
 def is_compiled(method: str) -> bool:
     """Return whether numba's cache holds the time loop of an integrator, which is compiled after the teeth."""
     from siggen.compiled import is_cached
-    from siggen.dynamics.time import exponential_step, pair_motion, product_integration
+    from siggen.motion import exponential_step, pair_motion, product_integration
 
     loops: dict[str, Any] = {
         "exponential": exponential_step.advance,
@@ -73,7 +73,7 @@ def _seldom_collected() -> Iterator[None]:
 
 def _run_teeth(specimen: Specimen, states: tuple[int, ...]) -> None:
     from siggen.record.specimen_state import state_teeth
-    from siggen.specimen.mesh_teeth import MeshTeeth
+    from siggen.record.teeth import MeshTeeth
 
     teeth = MeshTeeth(specimen.law, specimen.meshes[0].teeth)
     for state_id in states:
@@ -83,12 +83,12 @@ def _run_teeth(specimen: Specimen, states: tuple[int, ...]) -> None:
 def _run_motion(specimen: Specimen, _: tuple[int, ...]) -> None:
     import numpy as np
 
-    from siggen.dynamics.mesh.tooth_law import LINEAR
-    from siggen.planning.plan import PlannedRecord
+    from siggen.gearbox.plan import PlannedRecord
+    from siggen.mesh.tooth_law import LINEAR
+    from siggen.record.friction import mean_force_n
+    from siggen.record.instrument import specimen_instrument
     from siggen.record.simulation import simulated
     from siggen.record.specimen_state import specimen_state
-    from siggen.specimen.friction import mean_force_n
-    from siggen.specimen.instrument import specimen_instrument
 
     # Tables of the same types without solving any contact: springs, as the law linear has them.
     springs = replace(specimen, law=replace(specimen.law, kind=LINEAR))

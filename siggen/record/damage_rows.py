@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import groupby
 
-from siggen.columns.damage_columns import DAMAGE_COLUMNS, has_drawn_edges, kind_columns, nothing_of
+from siggen.columns.damage import DAMAGE_COLUMNS, has_drawn_edges, kind_columns, nothing_of
+from siggen.damage.part import Part
+from siggen.gearbox.plan import PlannedRecord
 from siggen.gearbox.specimen import Specimen
-from siggen.gears.damage.part import Part
 from siggen.names import Names
-from siggen.planning.plan import PlannedRecord
-from siggen.specimen.bearing_spalls import drawn_labels
-from siggen.specimen.mesh_teeth import MeshTeeth
+from siggen.record.bearing_spalls import drawn_labels
+from siggen.record.teeth import MeshTeeth
 
 
 def damage_rows(

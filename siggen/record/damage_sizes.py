@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from siggen.gearbox.specimen import Specimen
-from siggen.record.labels import damage_labels
-from siggen.record.stage_labels import LARGEST
-from siggen.specimen.mesh_teeth import all_teeth
+from siggen.record.labels import LARGEST, damage_labels
+from siggen.record.teeth import all_teeth
 
 
 def damage_sizes(gearbox: Specimen) -> dict[str, Mapping[str, object]]:

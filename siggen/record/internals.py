@@ -7,15 +7,15 @@ import pyarrow as pa
 
 from siggen.arrays import FloatArray
 from siggen.columns.record import channel_metadata, channels
-from siggen.dynamics.time.response import Response
+from siggen.gearbox.plan import PlannedRecord
 from siggen.gearbox.specimen import OperatingPoint, Specimen
-from siggen.planning.plan import PlannedRecord
+from siggen.motion.response import Response
 from siggen.record.channels import measured_channels
+from siggen.record.drive import record_rotation
+from siggen.record.instrument import specimen_instrument
 from siggen.record.quantities import internal_quantities
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import SpecimenState, specimen_state
-from siggen.specimen.drive import record_rotation
-from siggen.specimen.instrument import specimen_instrument
 
 
 def internals_table(gearbox: Specimen, record: PlannedRecord, *, internals: bool = True) -> pa.Table:

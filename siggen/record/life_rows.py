@@ -7,7 +7,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from siggen.gearbox.lived import Lived
+from siggen.gearbox.life import Lived
 
 Row = dict[str, object]
 RUNS = 200

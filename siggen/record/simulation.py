@@ -8,29 +8,32 @@ from functools import lru_cache
 
 import numpy as np
 
-from siggen.checks.quantity_names import acceleration_name
 from siggen.columns.record import RecordFailure, SimulatedRecord, label_columns
-from siggen.dynamics.time.motion import Motion
-from siggen.dynamics.time.response import Response, SampleGrid, Wanted, collected_response, response_stream
-from siggen.dynamics.time.response_stream import Piece, ResponseStream
-from siggen.dynamics.time.transient import both_settled_s
 from siggen.errors import SolverFailure
+from siggen.gearbox.plan import PlannedRecord
 from siggen.gearbox.specimen import OperatingPoint, Specimen
-from siggen.planning.plan import PlannedRecord
+from siggen.motion.motion import Motion, both_settled_s
+from siggen.motion.response import (
+    Piece,
+    Response,
+    ResponseStream,
+    SampleGrid,
+    Wanted,
+    collected_response,
+    response_stream,
+)
 from siggen.record.channels import measured_channels
-from siggen.record.labels import operating_labels
-from siggen.record.machine import RecordedMachine, machines
-from siggen.record.planetary_state import planetary_labels
-from siggen.record.specimen_state import SpecimenState, refused_as, specimen_state
-from siggen.record.stage_labels import stage_operating_labels
+from siggen.record.drive import RecordDrive, record_drive, variation_labels
+from siggen.record.instrument import Instrument, history_s
+from siggen.record.labels import operating_labels, planetary_labels, stage_operating_labels
+from siggen.record.quantities import StreamedInternals
+from siggen.record.quantity_names import acceleration_name
+from siggen.record.specimen_state import RecordedMachine, SpecimenState, machines, refused_as, specimen_state
 from siggen.record.stage_times import stage
-from siggen.record.streamed_internals import StreamedInternals
-from siggen.sensing.block_filter import AHEAD
+from siggen.record.step_choice import stepped_motion
+from siggen.record.structure import structure
+from siggen.sensing.filters import AHEAD
 from siggen.sensing.inputs import FORCE, SHAFT
-from siggen.specimen.drive import RecordDrive, record_drive, variation_labels
-from siggen.specimen.instrument import Instrument, history_s
-from siggen.specimen.step_choice import stepped_motion
-from siggen.specimen.structure import structure
 
 
 def record_response(

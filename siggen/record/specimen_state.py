@@ -2,34 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import lru_cache, partial
 
-from siggen.columns.planetary_columns import EACH
-from siggen.dynamics.structure.structure import Structure
+from siggen.columns.labels import EACH
+from siggen.damage.part import Damage, Parts, on_teeth
+from siggen.drivetrain.structure import Structure
 from siggen.errors import SolverFailure
 from siggen.gearbox.specimen import PlanetaryGears, Specimen
-from siggen.gearbox.tooth_errors import SpecimenErrors, lead_of
-from siggen.gears.damage.part import Parts
-from siggen.gears.damage.tooth_damage import Damage, on_teeth
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
-from siggen.gears.stiffness.mesh_tables import TABLE_POINTS
-from siggen.record.labels import damage_labels
-from siggen.record.planetary_state import with_ring_labels
-from siggen.record.stage_labels import stage_labels
-from siggen.record.tooth_labels import ring_and_planet_labels, tooth_labels
+from siggen.gearbox.teeth import SpecimenErrors, lead_of
+from siggen.gears.gear_pair import GearPair
+from siggen.mesh.mesh_stiffness import StiffnessOptions
+from siggen.mesh.mesh_tables import TABLE_POINTS
+from siggen.record.back_flanks import with_back_flanks, with_static_back
+from siggen.record.clocking import clocked_pitches
+from siggen.record.contact import ToothTables, tooth_tables
+from siggen.record.drive import MeshPlace
+from siggen.record.instrument import Instrument, specimen_instrument
+from siggen.record.labels import (
+    damage_labels,
+    gearbox_labels,
+    ring_and_planet_labels,
+    stage_labels,
+    tooth_labels,
+    with_ring_labels,
+)
+from siggen.record.motion import MeshBehind, SpecimenMesh, with_planets
+from siggen.record.stage_times import stage
+from siggen.record.static_mesh import StaticMesh, static_mesh
+from siggen.record.structure import structure
+from siggen.record.teeth import MeshTeeth, all_teeth
 from siggen.seeding import Stream, named_uniforms
-from siggen.specimen.back_flanks import with_back_flanks, with_static_back
-from siggen.specimen.clocking import clocked_pitches
-from siggen.specimen.contact import ToothTables, tooth_tables
-from siggen.specimen.lost_mass import MeshPlace
-from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth
-from siggen.specimen.motion import MeshBehind, SpecimenMesh
-from siggen.specimen.planetary_meshes import with_planets
-from siggen.specimen.static_mesh import StaticMesh, static_mesh
-from siggen.specimen.structure import structure
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,3 +188,44 @@ def refused_as(status: str) -> Iterator[None]:
         yield
     except ValueError as error:
         raise SolverFailure(status, str(error)) from error
+
+
+# A gearbox as its states share it: what is drawn for it, how it was made, and what measures it.
+#
+# States that change nothing share the healthy machine. A state that changes keys has a machine of its own, drawn with
+# the same uniforms.
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedMachine:
+    """A gearbox, its teeth, structure and instrument, and the labels of all records."""
+
+    specimen: Specimen
+    teeth: Sequence[MeshTeeth]
+    structure: Structure
+    instrument: Instrument
+    labels: dict[str, object]
+
+    def at_point(self, operating_point_id: int) -> RecordedMachine:
+        """Return the machine under the load of an operating point; itself where its bearings have one stiffness."""
+        specimen = self.specimen.under(self.specimen.points[operating_point_id])
+        if specimen is self.specimen:
+            return self
+        with stage("sensing"):
+            return replace(self, specimen=specimen, instrument=specimen_instrument(specimen))
+
+
+def machines(gearbox: Specimen) -> Callable[[int | None], RecordedMachine]:
+    """Return state -> the machine of a gearbox in that state; that of states that change nothing (None) is kept."""
+    shared = lru_cache(maxsize=1)(lambda: _machine(lambda: gearbox))
+    changed = lru_cache(maxsize=1)(lambda state: _machine(partial(gearbox.in_state, state)))
+    return lambda state: shared() if state is None or gearbox.states[state].changed is None else changed(state)
+
+
+def _machine(drawn: Callable[[], Specimen]) -> RecordedMachine:
+    with refused_as("outside_model"), stage("plan"):
+        specimen = drawn()
+        labels, assembled = gearbox_labels(specimen), structure(specimen)
+    with stage("sensing"):
+        instrument = specimen_instrument(specimen)
+    return RecordedMachine(specimen, all_teeth(specimen), assembled, instrument, labels)

@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from siggen.config import GearsSection
-from siggen.config.pairs import PairSection
-from siggen.faults.flank_place import FACE_WIDTH, MODULE, SKEW
+from siggen.config.gears import PairSection
+from siggen.damage.flank_place import FACE_WIDTH, MODULE, SKEW
 from siggen.keys.scaling import grown, multiplied, scaled
 from siggen.names import SHAFT_OF
 from siggen.rig.pair_scales import PairScales, pair_scales

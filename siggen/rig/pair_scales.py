@@ -11,7 +11,7 @@ from math import ceil
 from typing import NamedTuple
 
 from siggen.config import GearsSection, OperatingRange
-from siggen.config.pairs import PairSection
+from siggen.config.gears import PairSection
 from siggen.keys.number import Number, at, bounds
 from siggen.rig.rig import Rig, RigDesign
 from siggen.rig.rig_numbers import rig_numbers

@@ -10,7 +10,7 @@ from math import ceil, cos, pi, radians, sqrt
 from typing import NamedTuple
 
 from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS, carried_mesh_harmonics
-from siggen.dynamics.structure.steel_disc import STEEL_DENSITY_KG_M3
+from siggen.drivetrain.gear_stage import STEEL_DENSITY_KG_M3
 from siggen.errors import UsageError
 from siggen.rig.rig import Pair, Rig
 from siggen.rig.shafts import ShaftSize, shafts

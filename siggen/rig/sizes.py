@@ -17,8 +17,8 @@ from siggen.config import Dynamics, GearsSection, RotorSection, ShaftSection, Si
 from siggen.config.config import OperatingRange
 from siggen.config.dynamics import RATED, RATED_SPEED
 from siggen.config.inheritance import SIZED
+from siggen.damage.ball_geometry import BallGeometry
 from siggen.errors import Problem
-from siggen.faults.ball_geometry import BallGeometry
 from siggen.keys.distributions import Uniform
 from siggen.keys.drawing import Uniforms, corners, draw
 from siggen.keys.merging import merged

@@ -20,7 +20,7 @@ from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
 from siggen.noise.registry import SourceKeys
 from siggen.sensing.inputs import MOTION, Input
-from siggen.sensing.sensor_response import high_pass_response, resonance_response
+from siggen.sensing.responses import high_pass_response, resonance_response
 from siggen.sensors.path import DIRECTIONS, PATH, MeasuredPath
 from siggen.sensors.places import IN_MOTION, MODAL, PLATE_OF, Places
 from siggen.sensors.quantity import ACCELERATION, Quantity

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from siggen.keys.data_file import DataRefusal
-from siggen.sensing.frequency_response import FrequencyResponse
+from siggen.sensing.responses import FrequencyResponse
 
 SINGLE = "f4;"
 """Before a response whose numbers are float32."""

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from siggen.dataset.environment import fingerprint, version_text
 from siggen.dataset.sidecar import Sidecar, committed, promised_shard, ranges
 from siggen.dataset.storage import Storage
-from siggen.planning.plan import ShardPlan
+from siggen.gearbox.plan import ShardPlan
 
 
 def usable_shards(

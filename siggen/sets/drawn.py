@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
-from siggen.checks.quantity_names import available_quantities, quantity_problems
 from siggen.columns.record import RecordFailure, SetColumns, SimulatedRecord
 from siggen.columns.record import set_columns as columns_of_gearbox
 from siggen.errors import ConfigError, SolverFailure
 from siggen.gearbox.design import SetDesign
+from siggen.gearbox.plan import planned_record, record_ids_of
 from siggen.keys.column import Column
-from siggen.planning.plan import planned_record, record_ids_of
 from siggen.record import damage_rows as rows
 from siggen.record import damage_sizes as sizes
 from siggen.record import life_rows as lives
 from siggen.record.compilation import MOTION, SHORT_S, TEETH, CompilationPart, is_compiled
 from siggen.record.quantities import quantity_column
+from siggen.record.quantity_names import available_quantities, quantity_problems
 from siggen.record.simulation import simulate_specimen
 from siggen.record.specimen_state import refused_as
 from siggen.record.stage_times import stage

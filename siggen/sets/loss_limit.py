@@ -10,7 +10,7 @@ from itertools import chain
 from siggen.columns.record import RecordFailure
 from siggen.errors import EXIT_RECORDS_FAILED, SiggenError, UsageError, counted
 from siggen.gearbox.design import SetDesign
-from siggen.planning.plan import planned_record
+from siggen.gearbox.plan import planned_record
 
 ALLOWED_LOSS = 0.1
 """Share of a state's records that may fail before a run stops, unless told otherwise."""

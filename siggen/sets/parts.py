@@ -25,7 +25,7 @@ from siggen.engines.registry import engine_of
 from siggen.engines.serial import SerialEngine
 from siggen.errors import DatasetError, UsageError, counted
 from siggen.gearbox.design import SetDesign, expect_design, stored_design
-from siggen.planning.plan import ShardPlan
+from siggen.gearbox.plan import ShardPlan
 from siggen.sets.committed_shards import promised
 from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import ALLOWED_LOSS, LossLimit

@@ -27,7 +27,7 @@ from siggen.dataset.storage import Storage
 from siggen.engines.protocol import Engine
 from siggen.errors import EXIT_INTERRUPTED, SiggenError, counted
 from siggen.gearbox.design import SetDesign
-from siggen.planning.plan import ShardPlan, rows_per_group, shards
+from siggen.gearbox.plan import ShardPlan, rows_per_group, shards
 from siggen.sets import physics as contents
 from siggen.sets.committed_shards import usable_shards
 from siggen.sets.interruption import Interruption

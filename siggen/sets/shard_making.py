@@ -20,7 +20,7 @@ from siggen.engines.processes import ProcessEngine
 from siggen.engines.protocol import DrainingEngine, Engine, Unfinished
 from siggen.engines.registry import running
 from siggen.errors import EngineError
-from siggen.planning.plan import ShardPlan
+from siggen.gearbox.plan import ShardPlan
 from siggen.record.compilation import CompilationPart, run_part
 from siggen.sets.interruption import Interruption
 from siggen.sets.run_journal import RunJournal

@@ -27,7 +27,7 @@ from siggen.dataset.sidecar import Sidecar, promised_shard, put_sidecar, ranges
 from siggen.engines.protocol import Unfinished
 from siggen.errors import DatasetError
 from siggen.file_writing import UNWRITABLE
-from siggen.planning.plan import ShardPlan
+from siggen.gearbox.plan import ShardPlan
 from siggen.record.stage_times import collected
 
 PART_S = 10.0

@@ -13,7 +13,7 @@ from statistics import median
 from typing import TYPE_CHECKING
 
 from siggen.columns.record import RecordFailure, non_finite
-from siggen.planning.plan import record_ids_of
+from siggen.gearbox.plan import record_ids_of
 from siggen.sets import physics as contents
 from siggen.sets.record_cost import RecordTime, SetCost, set_cost, timed
 

@@ -12,25 +12,23 @@ from typing import Any
 
 import numpy as np
 
-from siggen.dynamics.drive.drive import Rotation
-from siggen.dynamics.mesh.law_tables import law_tables
-from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.structure.shaft_lines import frame_turns, rolling, without_drift
-from siggen.dynamics.structure.structure import MeshVectors, Structure
-from siggen.dynamics.time.decimation import half_length
-from siggen.dynamics.time.equations import Equations
-from siggen.dynamics.time.motion import Motion
-from siggen.dynamics.time.transient import both_settled_s, settling_steps
+from siggen.drivetrain.drive import Rotation
+from siggen.drivetrain.structure import MeshVectors, Structure, frame_turns, rolling, without_drift
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
+from siggen.gearbox.plan import PlannedRecord
 from siggen.gearbox.specimen import Specimen
-from siggen.planning.plan import PlannedRecord
+from siggen.mesh.law_tables import law_tables
+from siggen.mesh.pair_law import PairLaw
+from siggen.motion.decimation import half_length
+from siggen.motion.equations import Equations
+from siggen.motion.motion import Motion, both_settled_s, settling_steps
+from siggen.record.drive import RecordDrive, start_angle_rad
+from siggen.record.instrument import history_s
 from siggen.record.simulation import at_point, state_drive
 from siggen.record.specimen_state import refused_as, specimen_state
+from siggen.record.step_choice import stepped_motion
 from siggen.sources import installed_version
-from siggen.specimen.drive import RecordDrive, start_angle_rad
-from siggen.specimen.instrument import history_s
-from siggen.specimen.step_choice import stepped_motion
 
 FORMAT_VERSION = 6
 """Raised when a key changes its meaning or goes away; new keys leave it."""

@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 
 from siggen.gearbox.mode_table import BASE, DRIVE, ModeTable
-from siggen.specimen.specimen_housing import SpecimenHousing, participation
+from siggen.record.housing import SpecimenHousing, participation
 
 RESIDUAL_HZ, RESIDUAL_DAMPING = 1e10, 1e-6
 """Of residual vectors: so high that within any band they only give way (to 1e-11 at 30 kHz)."""

@@ -10,23 +10,21 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.mesh.contact_names import PAIR_PREFIX
-from siggen.dynamics.mesh.tooth_law import ToothLaw
+from siggen.damage.part import damaged_teeth, has_extent, pits_of
 from siggen.errors import UsageError
+from siggen.gearbox.plan import PlannedRecord
 from siggen.gearbox.specimen import OperatingPoint, Specimen
-from siggen.gears.contact.kind_row import KindRow, kind_row
-from siggen.gears.contact.loads_under_force import loads_under_force
-from siggen.gears.contact.slice_pressures import slice_pressures
-from siggen.gears.contact.table_columns import TableSolver, row_faces, table_solver
-from siggen.gears.contact.table_options import face_slices
-from siggen.gears.damage.tooth_damage import damaged_teeth, has_extent, pits_of
 from siggen.keys.problems import nearest
+from siggen.mesh.contact_names import PAIR_PREFIX
+from siggen.mesh.contact_table import KindRow, TableSolver, kind_row, row_faces, table_solver
+from siggen.mesh.face_force import loads_under_force, slice_pressures
+from siggen.mesh.table_options import face_slices
+from siggen.mesh.tooth_law import ToothLaw
 from siggen.names import MeshName, Names, Side
-from siggen.planning.plan import PlannedRecord
+from siggen.record.contact import face_options
 from siggen.record.internals import record_internals
 from siggen.record.specimen_state import SpecimenState, refused_as
-from siggen.specimen.contact import face_options
-from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth
+from siggen.record.teeth import MeshTeeth, all_teeth
 from siggen.views.flank_views import FlankView, flank_view
 
 POSITIONS = 161

@@ -9,21 +9,20 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.arrays import FloatArray
-from siggen.columns.damage_columns import damage_columns
+from siggen.columns.damage import damage_columns
+from siggen.damage.outlines import Outline
+from siggen.damage.part import Damage, damaged_teeth, on_teeth, pits_of
 from siggen.errors import UsageError
+from siggen.gearbox.plan import PlannedRecord
 from siggen.gearbox.specimen import Specimen
-from siggen.gears.damage.outlines import Outline
-from siggen.gears.damage.tooth_damage import Damage, damaged_teeth, on_teeth, pits_of
-from siggen.gears.geometry.contact_zones import contact_zones
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.spur_gear import SpurGear
-from siggen.gears.stiffness.damage_summary import flank_arc_m
-from siggen.gears.stiffness.sections import union_area_m2
+from siggen.gears.gear_pair import GearPair, contact_zones
+from siggen.gears.spur_gear import SpurGear
 from siggen.keys.problems import nearest
+from siggen.mesh.damage_summary import flank_arc_m
+from siggen.mesh.sections import union_area_m2
 from siggen.names import Side
-from siggen.planning.plan import PlannedRecord
 from siggen.record.damage_rows import damage_rows
-from siggen.specimen.mesh_teeth import MeshTeeth
+from siggen.record.teeth import MeshTeeth
 
 
 def outline_mm(outline: Outline, points: int = 181) -> FloatArray:

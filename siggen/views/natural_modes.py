@@ -9,11 +9,11 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.time.modes import MotionModes, natural_modes
 from siggen.gearbox.specimen import Specimen
-from siggen.gears.stiffness.mesh_tables import mesh_tables
-from siggen.specimen.structure import structure
+from siggen.mesh.mesh_force import mean_mesh_stiffness
+from siggen.mesh.mesh_tables import mesh_tables
+from siggen.motion.modes import MotionModes, natural_modes
+from siggen.record.structure import structure
 
 FIRST = "first"
 """The mesh without a name."""

@@ -10,13 +10,12 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.structure.makers import RING_TURNING
+from siggen.drivetrain.makers import RING_TURNING
 from siggen.errors import UsageError
 from siggen.gearbox.specimen import Specimen
-from siggen.sensing.spectral_filter import frequencies
-from siggen.specimen.housing import specimen_housing
-from siggen.specimen.instrument import ChannelInstrument, settle_s, specimen_instrument
-from siggen.specimen.specimen_housing import SpecimenHousing
+from siggen.record.housing import SpecimenHousing, specimen_housing
+from siggen.record.instrument import ChannelInstrument, settle_s, specimen_instrument
+from siggen.sensing.filters import frequencies
 
 FILE_NUMBERS = 150_000
 """Of one sensor in a table that shall be read again: two sensors fit into the configuration of a set."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from siggen.dynamics.structure.makers import RING_TURNING
+from siggen.drivetrain.makers import RING_TURNING
 from siggen.views.path_curves import PathCurves
 from siggen.views.picture_file import save_figure
 

@@ -7,15 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from siggen.arrays import FloatArray, IntArray
-from siggen.gears.contact.contact_table import ContactTable
-from siggen.gears.contact.face_gaps import face_gaps
-from siggen.gears.contact.table_columns import FORCE, SLOPE, node_places_m
-from siggen.gears.damage.flank_chords import flank_chords
-from siggen.gears.damage.tooth_damage import Damage, has_extent, pits_of
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.stiffness.mesh_tables import pair_kinds, table_of_pair
+from siggen.damage.flank_chords import flank_chords
+from siggen.damage.part import Damage, has_extent, pits_of
+from siggen.gears.gear_pair import GearPair
+from siggen.mesh.contact_table import FORCE, SLOPE, ContactTable, node_places_m
+from siggen.mesh.face_slices import face_gaps
+from siggen.mesh.mesh_tables import pair_kinds, table_of_pair
 from siggen.names import Side
-from siggen.specimen.static_mesh import StaticMesh
+from siggen.record.static_mesh import StaticMesh
 
 HALVINGS = 50
 """Of an interval between two approaches of a table: beyond rounding."""

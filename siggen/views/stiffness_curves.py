@@ -11,16 +11,16 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
+from siggen.damage.part import Damage, on_teeth, pits_of
 from siggen.errors import UsageError
 from siggen.gearbox.specimen import Specimen
-from siggen.gears.damage.tooth_damage import Damage, on_teeth, pits_of
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_compliance
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.gears.gear_pair import GearPair
+from siggen.mesh.mesh_stiffness import mesh_stiffness, pair_compliance
+from siggen.mesh.stiffness_options import StiffnessOptions
 from siggen.names import Side
+from siggen.record.friction import light_force_n
 from siggen.record.specimen_state import static_state
-from siggen.specimen.friction import light_force_n
-from siggen.specimen.mesh_teeth import MeshTeeth
+from siggen.record.teeth import MeshTeeth
 from siggen.views.simulated_contact import SimulatedContact, simulated_contact
 
 TOOTH_PARTS = ("foundation", "bending", "shear", "axial")
@@ -102,8 +102,8 @@ def stiffness_curves(
     UsageError
         If the teeth do not carry the torque.
 
-    Source: paper A, section 2.2, by `siggen.gears.stiffness.mesh_stiffness`; where damage acts as geometry, force over
-    approach at rest by `siggen.dynamics.mesh.static_stiffness`.
+    Source: paper A, section 2.2, by `siggen.mesh.mesh_stiffness`; where damage acts as geometry, force over
+    approach at rest by `siggen.mesh.static_mesh`.
     """
     if points_per_pitch < 1 or (pitches is not None and pitches < 1):
         raise ValueError(f"received {points_per_pitch} points and {pitches} pitches; allowed: at least 1 of each")

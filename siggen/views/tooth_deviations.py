@@ -11,10 +11,9 @@ import pyarrow as pa
 from siggen.arrays import FloatArray
 from siggen.errors import UsageError
 from siggen.gearbox.specimen import Specimen
-from siggen.gearbox.tooth_errors import MadeGear
-from siggen.gears.errors.gear_errors import profiles_m
-from siggen.gears.errors.helix import HELIX_POINTS
-from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gearbox.teeth import MadeGear
+from siggen.gears.errors import HELIX_POINTS, profiles_m
+from siggen.gears.gear_pair import GearPair
 from siggen.keys.problems import nearest
 from siggen.names import Side
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from siggen.checks.damage_notes import damage_notes
-from tests.faults.test_damage import PIT, config_with
+from siggen.checks.notes import damage_notes
+from tests.damage.test_damage import PIT, config_with
 
 BOX: dict[str, Any] = {"kind": "spall", "face_length_mm": 20.0, "profile_length_mm": 1.0, "depth_mm": 0.2}
 PART = {**BOX, "face_length_mm": 8.0}

@@ -8,7 +8,7 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError
-from siggen.gears.contact.edge_law import edge_terms
+from siggen.mesh.contact_edges import edge_terms
 from tests.config.minimal import by_name, minimal
 
 PITS = {"name": "slight", **minimal()["states"]["slight"]}

@@ -10,11 +10,10 @@ import pytest
 from siggen.checks.housing_problems import housing_problems
 from siggen.checks.loading import load_config
 from siggen.config import inherited, parse_yaml, yaml_text
-from siggen.dynamics.housing.layout import layout
+from siggen.drivetrain.box import layout
 from siggen.errors import ConfigError
-from siggen.gearbox.housing_layout import specimen_layout
-from siggen.gearbox.housing_numbers import plate_numbers
-from siggen.gearbox.pair import gear_pair
+from siggen.gearbox.housing import plate_numbers, specimen_layout
+from siggen.gearbox.teeth import gear_pair
 from siggen.rig.rig_answers import rig_of
 from siggen.rig.rig_text import rig_text
 from tests.config.minimal import minimal

@@ -8,11 +8,11 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.config import yaml_text
+from siggen.damage.flank_place import height_m_of
 from siggen.errors import ConfigError, UsageError
-from siggen.faults.flank_place import height_m_of
-from siggen.gearbox.pair import gear_pair
-from siggen.gears.geometry.gear_pair import geometry_problems
-from siggen.planning.plan import plan
+from siggen.gearbox.plan import plan
+from siggen.gearbox.teeth import gear_pair
+from siggen.gears.gear_pair import geometry_problems
 from tests.config.minimal import config, minimal
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs"

@@ -10,14 +10,14 @@ import pytest
 import yaml
 
 from siggen.checks.loading import load_config
-from siggen.checks.shaft_notes import shaft_notes
+from siggen.checks.notes import shaft_notes
 from siggen.checks.tilt_problems import flank_tilts, static_tilt_rad
 from siggen.columns.record import RecordFailure, SimulatedRecord
 from siggen.errors import ConfigError
 from siggen.gearbox.specimen import Specimen
 from siggen.names import Side
+from siggen.record.motion import specimen_motion
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.motion import specimen_motion
 from tests.config.minimal import minimal
 from tests.simulated import simulate
 

@@ -7,11 +7,10 @@ from typing import Any
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.dynamics.structure.free_rotation import static_solution
-from siggen.dynamics.time.equations import mesh_springs
+from siggen.drivetrain.structure import static_solution
 from siggen.errors import ConfigError, Problem
-from siggen.specimen.staged_structure import axis_places_m
-from siggen.specimen.structure import structure
+from siggen.motion.equations import mesh_springs
+from siggen.record.structure import axis_places_m, structure
 from tests.config.minimal import by_name
 from tests.config.staged import SLOW, staged
 

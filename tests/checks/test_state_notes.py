@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from siggen.checks.damage_notes import state_notes
 from siggen.checks.loading import load_config
+from siggen.checks.notes import state_notes
 from siggen.errors import ConfigError
 from tests.config.minimal import by_name, minimal
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from siggen.checks.variation_notes import reversal_notes
+from siggen.checks.notes import reversal_notes
 from tests.config.minimal import design
 
 

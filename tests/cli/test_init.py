@@ -14,7 +14,7 @@ from siggen.checks.plausibility import _hertz_pa, implausible
 from siggen.cli.app import app
 from siggen.config import read_yaml
 from siggen.errors import UsageError
-from siggen.gearbox.pair import gear_pair
+from siggen.gearbox.teeth import gear_pair
 from tests.command import command
 
 RIGS = {

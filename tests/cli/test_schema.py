@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from siggen.cli.app import app
 from siggen.config import Config, read_yaml
-from siggen.faults.registry import BY_WORD
+from siggen.damage.registry import BY_WORD
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ import siggen.sets.verification
 from siggen.config import parse
 from siggen.dataset.reading import open as open_set
 from siggen.errors import UsageError
-from siggen.planning.plan import planned_record
+from siggen.gearbox.plan import planned_record
 from siggen.sets.verification import EXACT, verify
 from tests.config.minimal import minimal
 from tests.dataset.fake_set import (

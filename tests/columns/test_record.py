@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from siggen.columns.damage_columns import DAMAGE_COLUMNS
+from siggen.columns.damage import DAMAGE_COLUMNS
 from siggen.columns.record import (
     damage_schema,
     label_schema,
@@ -19,7 +19,7 @@ from siggen.columns.record import (
     signal_matrix,
 )
 from siggen.errors import DatasetError
-from siggen.planning.plan import planned_record
+from siggen.gearbox.plan import planned_record
 from siggen.sets.drawn import set_columns
 from tests.dataset.fake_set import fake_config, fake_record, simulate
 from tests.simulated import label_names

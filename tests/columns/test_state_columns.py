@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic_core import PydanticCustomError
 
 import siggen
-from siggen.checks.state_problems import _columns
+from siggen.checks.physical_problems import _columns
 from siggen.config import Config
 from siggen.config.changes import Change, _paths, changed_sections
 from siggen.keys.distributions import Uniform

@@ -11,9 +11,9 @@ from siggen.checks.loading import load_config
 from siggen.config import parse, yaml_text
 from siggen.errors import ConfigError
 from siggen.gearbox.configured import gearbox_config
+from siggen.record.structure import structure
+from siggen.record.teeth import all_teeth
 from siggen.sets.drawn import set_columns
-from siggen.specimen.mesh_teeth import all_teeth
-from siggen.specimen.structure import structure
 from tests.config.idler import MACHINE as MACHINE_OF_IDLER
 from tests.config.idler import idler, with_idler
 from tests.config.mill import MACHINE, mill, with_machine

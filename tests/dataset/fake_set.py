@@ -19,9 +19,9 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.columns.record import Column, RecordFailure, SimulatedRecord
+from siggen.gearbox import plan
 from siggen.gearbox.design import SetDesign, design_of
-from siggen.planning import plan
-from siggen.planning.plan import PlannedRecord, planned_record
+from siggen.gearbox.plan import PlannedRecord, planned_record
 from siggen.sets import physics
 from siggen.sets.generation import generate
 from siggen.sets.run_journal import Events

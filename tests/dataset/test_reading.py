@@ -17,7 +17,7 @@ from siggen.dataset import reading
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
 from siggen.errors import DatasetError, UsageError
-from siggen.planning.plan import planned_record, split_of
+from siggen.gearbox.plan import planned_record, split_of
 from tests.dataset.fake_set import copy_fake_set, fake_config, fake_record, simulate_with_failures, write_fake_set
 
 CONFIG = fake_config()
@@ -151,7 +151,7 @@ def test_reading_loads_neither_physics_nor_the_configuration_model(folder: Path)
 import sys, siggen
 dataset = siggen.open(sys.argv[1])
 dataset.labels(), dataset.damage(), dataset.record(0), next(dataset.records())
-slow = {"numba", "scipy", "matplotlib", "torch", "siggen.config", "siggen.planning.plan"}
+slow = {"numba", "scipy", "matplotlib", "torch", "siggen.config", "siggen.gearbox.plan"}
 print(sorted(slow & set(sys.modules)))
 """
     done = subprocess.run([sys.executable, "-c", code, str(folder)], capture_output=True, text=True, check=True)

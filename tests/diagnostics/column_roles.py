@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import pyarrow as pa
 
 from diagnostics.records.gear_train import pair_train
-from siggen.columns.common_columns import INTEGRATION_COLUMNS, operating_columns, target_columns, variation_columns
+from siggen.columns.labels import INTEGRATION_COLUMNS, operating_columns, target_columns, variation_columns
 from siggen.columns.record import ID_COLUMNS
 from siggen.gearbox.labels import SHAM
 from siggen.keys.column import Column, Role

@@ -16,7 +16,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
 
-from siggen.columns.damage_columns import DAMAGE_COLUMNS
+from siggen.columns.damage import DAMAGE_COLUMNS
 from siggen.dataset.reading import RowGroup
 from tests.diagnostics.column_roles import ListedRoles
 from tests.shared import shared

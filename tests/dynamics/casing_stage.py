@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from siggen.dynamics.structure.gear_stage import Bearing, Bolts, Casing, Coupling, GearStage, Rotor
-from siggen.dynamics.structure.structure import Structure, vector
+from siggen.drivetrain.gear_stage import Bearing, Bolts, Casing, Coupling, GearStage, Rotor
+from siggen.drivetrain.structure import Structure, vector
 from tests.dynamics.trains import casing_structure, eight_dof
 
 PRESSURE_ANGLE = np.radians(20.0)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.gear_stage import Bearing, Coupling, GearStage, Rotor
-from siggen.dynamics.structure.structure import Structure
-from siggen.gears.stiffness.mesh_tables import MeshTables
+from siggen.drivetrain.gear_stage import Bearing, Coupling, GearStage, Rotor
+from siggen.drivetrain.structure import Structure
+from siggen.mesh.mesh_tables import MeshTables
 from tests.dynamics.trains import eight_dof
 
 PRESSURE_ANGLE = np.radians(20.0)

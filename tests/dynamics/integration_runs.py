@@ -7,10 +7,10 @@ from itertools import pairwise
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from siggen.dynamics.mesh.mesh_force import MeshLaw, mean_mesh_stiffness, mesh_law
-from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.equations import Equations, equations_of_motion, no_inputs, start_state, state_rate
-from siggen.gears.stiffness.mesh_tables import MeshTables
+from siggen.drivetrain.structure import Structure
+from siggen.mesh.mesh_force import MeshLaw, mean_mesh_stiffness, mesh_law
+from siggen.mesh.mesh_tables import MeshTables
+from siggen.motion.equations import Equations, equations_of_motion, no_inputs, start_state, state_rate
 
 MESH_HZ = 540.0
 FIRST_PITCHES = 54.2

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from siggen.dynamics.drive.drive import Drive
-from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.linear_motion import LinearMotion
-from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
-from siggen.gears.stiffness.mesh_tables import MeshTables
+from siggen.drivetrain.drive import Drive
+from siggen.drivetrain.structure import Structure
+from siggen.mesh.mesh_tables import MeshTables
+from siggen.motion.linear_motion import LinearMotion
+from siggen.motion.response import Response, SampleGrid, Wanted, response_of
 
 
 def simulate_response(

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
-from siggen.dynamics.friction.contact_kinematics import effective_modulus
-from siggen.dynamics.friction.lubrication import LubricatedMesh
+from siggen.mesh.lubrication import LubricatedMesh, effective_modulus
 from tests.gears.builders import pair_18_47
 
 PAIR = pair_18_47(module_m=3e-3)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.modes import natural_modes
+from siggen.drivetrain.structure import Structure
+from siggen.motion.modes import natural_modes
 
 
 def natural_frequencies_hz(structure: Structure, mesh_stiffness_n_per_m: float) -> np.ndarray:

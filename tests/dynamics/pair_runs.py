@@ -7,21 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from siggen.dynamics.friction.friction import FrictionLaw
-from siggen.dynamics.mesh.damping import DampingLaw
-from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
-from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.equations import no_inputs
-from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
-from siggen.gears.contact.contact_table import ContactTable, contact_table
-from siggen.gears.contact.table_options import TableOptions
-from siggen.gears.damage.tooth_damage import Damage
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.geometry.missing_material import MissingMaterial, TipRelief, missing_material
-from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
-from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables
-from siggen.specimen.contact import whole_face
+from siggen.damage.part import Damage
+from siggen.drivetrain.structure import Structure
+from siggen.gears.gear_pair import GearPair, SpurGear
+from siggen.gears.missing_material import MissingMaterial, TipRelief, missing_material
+from siggen.mesh.contact_table import ContactTable, contact_table
+from siggen.mesh.friction import FrictionLaw
+from siggen.mesh.mesh_force import mean_mesh_stiffness
+from siggen.mesh.mesh_stiffness import StiffnessOptions
+from siggen.mesh.mesh_tables import MeshTables, mesh_tables
+from siggen.mesh.pair_law import MeshConstants, PairLaw, pair_law
+from siggen.mesh.table_options import TableOptions
+from siggen.mesh.tooth_law import DampingLaw
+from siggen.motion.equations import no_inputs
+from siggen.motion.pair_motion import MeanState, PairMesh, PairMotion
+from siggen.record.contact import whole_face
 
 RELIEF = TipRelief(8e-6, 0.25 * 8.856e-3)
 TEETH = StiffnessOptions("base_circle", "sainsot", "profile")

@@ -8,17 +8,16 @@ from math import radians
 
 import numpy as np
 
-from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.mesh.pair_law import MeshConstants, pair_law
-from siggen.dynamics.structure.gear_stage import Coupling, PlanetaryBody, PlanetaryStage
-from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.pair_motion import PairMesh
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.geometry.internal_pair import InternalPair, ring_begins_pitches, ring_round
-from siggen.gears.geometry.missing_material import MissingMaterial, MissingTables
-from siggen.gears.geometry.planetary import PlanetarySet
-from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions
-from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables
+from siggen.drivetrain.gear_stage import Coupling, PlanetaryBody, PlanetaryStage
+from siggen.drivetrain.structure import Structure
+from siggen.gears.gear_pair import GearPair, SpurGear
+from siggen.gears.missing_material import MissingMaterial, MissingTables
+from siggen.gears.planetary import InternalPair, PlanetarySet, ring_begins_pitches, ring_round
+from siggen.mesh.mesh_force import mean_mesh_stiffness
+from siggen.mesh.mesh_stiffness import StiffnessOptions
+from siggen.mesh.mesh_tables import MeshTables, mesh_tables
+from siggen.mesh.pair_law import MeshConstants, pair_law
+from siggen.motion.pair_motion import PairMesh
 
 
 @cache

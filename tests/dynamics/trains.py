@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from siggen.dynamics.structure.gear_stage import Casing, GearStage, NextStage, PlanetaryStage, Shaft
-from siggen.dynamics.structure.makers import Housing, planetary_train, rigid_housing, shaft_places_m, train
-from siggen.dynamics.structure.structure import Structure, assembled
+from siggen.drivetrain.gear_stage import Casing, GearStage, NextStage, PlanetaryStage, Shaft
+from siggen.drivetrain.makers import Housing, planetary_train, rigid_housing, shaft_places_m, train
+from siggen.drivetrain.structure import Structure, assembled
 from siggen.names import PAIR, GearName, MeshName, ShaftName
 
 

@@ -36,7 +36,7 @@ def default_model(specimens: int = SPECIMENS) -> SetDesign:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a step; return the exit code of a command."""
     from siggen.errors import SiggenError
-    from siggen.planning import plan
+    from siggen.gearbox import plan
 
     given = _arguments(arguments)
     if given.memory_mb:

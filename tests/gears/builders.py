@@ -6,8 +6,8 @@ from dataclasses import replace
 from fractions import Fraction
 from math import radians
 
-from siggen.gears.damage.pit import FlankPit
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.damage.pits import FlankPit
+from siggen.gears.gear_pair import GearPair, SpurGear
 
 
 def spur_gear(teeth=18, module_m=3.5e-3, bore_radius_m=12.5e-3, profile_shift=0.0):

@@ -6,10 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from siggen.gears.errors.error_shapes import ErrorShapes, error_shapes
-from siggen.gears.errors.gear_errors import GearErrors, gear_errors
-from siggen.gears.errors.iso_1328 import FlankTolerances, flank_tolerances
-from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.errors import ErrorShapes, GearErrors, error_shapes, gear_errors
+from siggen.gears.gear_pair import GearPair
+from siggen.gears.tolerances import FlankTolerances, flank_tolerances
 
 
 def named(seed: int, owner: str = "") -> Callable[[str], np.random.Generator]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import sqrt
 
-from siggen.gears.damage.pit import FlankPit
-from siggen.gears.geometry.gear_pair import GearPair
+from siggen.damage.pits import FlankPit
+from siggen.gears.gear_pair import GearPair
 
 
 def arc_of(pair: GearPair, which: str, position_m: float) -> float:

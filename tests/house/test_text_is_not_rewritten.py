@@ -24,7 +24,7 @@ SHOWS = {
     "diagnostics.page.live": "data inside a script",
     "diagnostics.page.security_policy": "line ends of a script, as browsers hash it",
     "diagnostics.report.report": "a sentence without its markup",
-    "siggen.gearbox.physics_sections": "the cell of a table in Markdown",
+    "siggen.gearbox.description": "the cell of a table in Markdown",
     "siggen.dataset.object_path": "an address of an object store",
     "siggen.sets.run_journal": "a time in UTC",
     "siggen.cli.init": "options as they are typed; a file's name as that of a set",

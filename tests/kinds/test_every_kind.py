@@ -17,9 +17,9 @@ import siggen
 from siggen.checks.loading import load_config
 from siggen.config.background import Background
 from siggen.config.housing import ModalHousing, PlateHousing, RigidHousing
+from siggen.damage.registry import BY_WORD
 from siggen.dataset.reading import Dataset
 from siggen.errors import ConfigError
-from siggen.faults.registry import BY_WORD
 from siggen.sensors.kinds import KINDS as SENSOR_KINDS
 from tests.kinds.machines import DAMAGES, HOUSINGS, MESHES, SENSORS, SIZES, SOURCES, machine, smaller
 

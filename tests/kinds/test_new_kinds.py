@@ -20,8 +20,8 @@ import siggen
 from diagnostics.recordings.columns import read_columns
 from diagnostics.recordings.measured_recording import read_recording
 from diagnostics.recordings.taken import RecordingFacts
+from siggen.damage.fault import Fault
 from siggen.errors import UsageError
-from siggen.faults.fault import Fault
 from tests.diagnostics.explore.unpacked import held
 from tests.house.source_tree import ROOT
 from tests.publication.conftest import facts_file

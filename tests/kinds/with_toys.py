@@ -14,9 +14,9 @@ PACKAGES = {"siggen": "siggen", "siggen-diagnostics": "diagnostics"}
 
 if __name__ == "__main__":
     SOURCES.append(ToyDrift)  # before sensors are imported, whose keys sources are
-    from siggen.faults import kinds as faults
+    from siggen.damage import kinds as faults
     from siggen.sensors import kinds as sensors
-    from tests.faults.toy_hinge import ToyHinge
+    from tests.damage.toy_hinge import ToyHinge
     from tests.sensors.toy_strain_gauge import ToyStrainGauge
 
     faults.KINDS.append(ToyHinge)

@@ -11,13 +11,13 @@ import pytest
 import siggen
 from siggen import Chip, Crack, Damage, Gear, GearPair, Pit, Spall, State, Wear, mesh_stiffness, pits_in_layers
 from siggen.arrays import FloatArray
+from siggen.damage.outlines import rectangle
+from siggen.damage.spalls import FlankSpall
 from siggen.errors import UsageError
-from siggen.gears.contact.contact_table import contact_table
-from siggen.gears.contact.table_options import TableOptions, face_slices
-from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import FlankSpall
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
 from siggen.library.shape_fault import shape_of
+from siggen.mesh.contact_table import contact_table
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.table_options import TableOptions, face_slices
 from siggen.views.stiffness_curves import stiffness_curves
 
 mpl.use("Agg")

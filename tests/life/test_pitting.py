@@ -7,12 +7,12 @@ import pytest
 from scipy.stats import expon, kstest
 
 from siggen.checks.loading import load_config
-from siggen.gears.stiffness.sections import union_area_m2
 from siggen.life import pitting
 from siggen.life.clock import Clock, LoadBlock
 from siggen.life.growth import STEP, Seeds, grown
 from siggen.life.initiation import begun, times_of, tooth_scale
 from siggen.life.pitting import FIRST_SHARE_SD, Pitting
+from siggen.mesh.sections import union_area_m2
 from siggen.seeding import Stream, named_generator
 from tests.life.wearing import NOMINAL, course, pair_flanks
 
@@ -131,7 +131,7 @@ def test_defaults_take_as_long_from_the_first_pit_to_4_percent_as_the_published_
 
 @pytest.mark.parametrize("unit", range(4))
 def test_areas_of_the_unions_are_those_of_growth_and_of_the_very_outlines(unit: int) -> None:
-    from siggen.faults.growth import Growth
+    from siggen.damage.growth import Growth
     from tests.life.wearing import PAIR
 
     one = course(unit)

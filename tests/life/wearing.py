@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.gears.gear_pair import GearPair, SpurGear
 from siggen.keys.drawing import draw
 from siggen.keys.number import MIDDLE
 from siggen.life.flank import Flank, flanks

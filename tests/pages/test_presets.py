@@ -16,11 +16,11 @@ from diagnostics.audit.traps import separability_findings, verdict
 from siggen.checks.loading import load_config
 from siggen.checks.plausibility import implausible
 from siggen.config.inheritance import inherited
-from siggen.config.state_keys import complete_states
+from siggen.config.states import complete_states
 from siggen.gearbox.configured import pair_of
 from siggen.gearbox.design import SetDesign
+from siggen.gearbox.plan import SPLITS, split_of
 from siggen.keys.yaml_source import read_yaml
-from siggen.planning.plan import SPLITS, split_of
 from siggen.sets.verification import verify
 from tests.simulated import simulate
 

@@ -12,8 +12,7 @@ import yaml
 import siggen
 from siggen.checks.loading import load_config
 from siggen.errors import ConfigError, UsageError
-from siggen.gearbox.description import class_words
-from siggen.gearbox.physics_sections import assumed_numbers_section, physics_section
+from siggen.gearbox.description import assumed_numbers_section, class_words, physics_section
 from siggen.publication.publication_facts import TEMPLATE, read_publication_facts
 from siggen.publication.publish import publish
 from siggen.publication.spdx_licence import _identifiers

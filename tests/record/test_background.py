@@ -11,30 +11,30 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.dynamics.time.response_stream import Piece
 from siggen.errors import ConfigError
 from siggen.gearbox.background import BearingLevels, RubbingLevels, drawn_background
 from siggen.gearbox.background_numbers import BaseNumbers
 from siggen.gearbox.design import SetDesign
 from siggen.gearbox.housing import Block
+from siggen.gearbox.plan import planned_record
 from siggen.gearbox.specimen import Specimen
-from siggen.planning.plan import planned_record
+from siggen.motion.response import Piece
 from siggen.record.background import BackgroundBlocks
 from siggen.record.background_course import BackgroundCourse, course_at
 from siggen.record.bearing_noise import velocity_density
-from siggen.record.block_inputs import BlockInputs
+from siggen.record.channels import BlockInputs
+from siggen.record.drive import record_rotation
+from siggen.record.forced_ways import ChannelWay, SpecimenBackground, specimen_background
+from siggen.record.instrument import Instrument, specimen_instrument
 from siggen.record.rubbing import RubbingForce, force_spectrum
+from siggen.sensing.filters import frequencies
 from siggen.sensing.inputs import MOTION, Input
-from siggen.sensing.sensor_response import resonance_response
-from siggen.sensing.spectral_filter import frequencies
+from siggen.sensing.responses import resonance_response
 from siggen.sets.drawn import simulated
-from siggen.specimen.background import ChannelWay, SpecimenBackground, specimen_background
-from siggen.specimen.drive import record_rotation
-from siggen.specimen.instrument import Instrument, specimen_instrument
 from tests.config.mill import mill
 from tests.config.minimal import by_name, minimal
+from tests.record.fixed_numbers import fix
 from tests.simulated import label_names, simulate
-from tests.specimen.fixed_numbers import fix
 
 ON_LID = {"name": "lid", "place": "lid", "axes": ["vertical"], "bits": None, "range_m_s2": 1e6}
 LID = {**ON_LID, "place": "casing", "position_mm": [60.0, 50.0]}

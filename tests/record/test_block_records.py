@@ -9,20 +9,20 @@ import pytest
 from scipy.signal import fftconvolve
 
 import siggen.record.simulation as simulation
-import siggen.sensing.block_filter as block_filter
+import siggen.sensing.filters as block_filter
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.gearbox.background_numbers import BaseNumbers, BurstNumbers
 from siggen.gearbox.design import SetDesign
-from siggen.planning.plan import planned_record
+from siggen.gearbox.plan import planned_record
+from siggen.record.instrument import specimen_instrument
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
-from siggen.sensing.block_filter import AHEAD
+from siggen.sensing.filters import AHEAD
 from siggen.sensing.inputs import MOTION
-from siggen.specimen.instrument import specimen_instrument
 from tests.config.minimal import by_name, minimal
+from tests.record.fixed_numbers import fix
 from tests.simulated import simulate
-from tests.specimen.fixed_numbers import fix
 
 LID = {"name": "lid", "place": "lid", "bits": None, "range_m_s2": 1e6, "cross_axis": 0.04, "high_pass_hz": 2.0,
        "mounting": {"frequency_hz": 9000.0, "damping_ratio": 0.05}}  # fmt: skip
@@ -74,7 +74,7 @@ def test_blocks_join_without_a_seam_to_one_convolution(monkeypatch: pytest.Monke
 def test_a_memory_four_times_as_long_changes_little(monkeypatch: pytest.MonkeyPatch) -> None:
     short = record(loaded(background=LINES))
     grid = block_filter.block_grid
-    monkeypatch.setattr("siggen.specimen.instrument.block_grid", lambda history, samples: grid(4 * history, samples))
+    monkeypatch.setattr("siggen.record.instrument.block_grid", lambda history, samples: grid(4 * history, samples))
     long = record(loaded(background=LINES))
     for name, values in long.channels.items():
         error = short.channels[name].astype(float) - values

@@ -11,15 +11,15 @@ import pytest
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.config import parse, parse_yaml
-from siggen.dynamics.mesh.contact_names import OF_CONTACT_ALONE
 from siggen.errors import ConfigError
 from siggen.gearbox.design import SetDesign
-from siggen.planning.plan import planned_record
+from siggen.gearbox.plan import planned_record
+from siggen.mesh.contact_names import OF_CONTACT_ALONE
 from siggen.record.quantities import internal_quantities
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
+from siggen.record.structure import structure
 from siggen.sets.drawn import stored_quantities
-from siggen.specimen.structure import structure
 from tests.simulated import internals_table, simulate
 
 SHORT = ["duration_s=0.05", "specimens=2"]

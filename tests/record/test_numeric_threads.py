@@ -10,7 +10,7 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.planning.plan import planned_record
+from siggen.gearbox.plan import planned_record
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from tests.sensing.test_measurement import measured

@@ -12,11 +12,11 @@ from siggen.columns.record import SimulatedRecord
 from siggen.errors import ConfigError
 from siggen.gearbox.design import SetDesign
 from siggen.gearbox.mode_table import seats_of
+from siggen.gearbox.plan import planned_record
 from siggen.names import PAIR
-from siggen.planning.plan import planned_record
+from siggen.record.housing import specimen_housing
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.housing import specimen_housing
 from tests.config.minimal import by_name, minimal
 from tests.simulated import label_names, simulate
 

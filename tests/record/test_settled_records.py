@@ -13,8 +13,8 @@ from siggen.columns.record import SimulatedRecord
 from siggen.gearbox.design import SetDesign
 from siggen.record import simulation
 from tests.config.planets import planets
+from tests.record.test_two_stages import WITHOUT_FRICTION, two_stages
 from tests.simulated import simulate
-from tests.specimen.test_two_stages import WITHOUT_FRICTION, two_stages
 
 EARLIER_S = 0.3
 SHORT = "duration_s=0.1"

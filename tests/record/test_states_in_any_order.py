@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from siggen.checks.loading import load_config
+from siggen.damage import flank_damage
 from siggen.gearbox.configured import gearbox_config
 from siggen.gearbox.design import SetDesign
-from siggen.gears.contact import contact_table
-from siggen.gears.damage import flank_damage
-from siggen.gears.stiffness import compliance
+from siggen.mesh import contact_table
+from siggen.mesh import tooth_compliance as compliance
+from siggen.record import contact
 from siggen.record.specimen_state import StateTeeth, state_teeth
-from siggen.specimen import contact
-from siggen.specimen.mesh_teeth import MeshTeeth, all_teeth
+from siggen.record.teeth import MeshTeeth, all_teeth
 
 SHARED = (
     contact._healthy_tables,

@@ -12,12 +12,11 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 
-from siggen.dynamics.friction.asperity_table import asperity_table
-from siggen.dynamics.friction.contact_kinematics import effective_modulus, relative_radius
-from siggen.dynamics.friction.friction import FrictionLaw, composite_friction
-from siggen.dynamics.friction.lubrication import LubricatedMesh
-from siggen.dynamics.friction.oil import MINERAL_OILS
-from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.gear_pair import GearPair
+from siggen.mesh.asperities import asperity_table
+from siggen.mesh.friction import FrictionLaw, composite_friction
+from siggen.mesh.lubrication import LubricatedMesh, effective_modulus, relative_radius
+from siggen.mesh.oil import MINERAL_OILS
 from tests.dynamics.friction.mesh_loss import mesh_mean_friction, schlenk_mean_friction
 from tests.gears.builders import pair_18_47
 

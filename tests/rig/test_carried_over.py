@@ -9,11 +9,11 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.config import Config, inherited, parse_yaml
-from siggen.config.pairs import PairSection
+from siggen.config.gears import PairSection
 from siggen.gearbox.configured import pair_config
 from siggen.gearbox.design import SetDesign
-from siggen.gearbox.pair import gear_pair
-from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gearbox.teeth import gear_pair
+from siggen.gears.gear_pair import GearPair
 from siggen.rig.rig import Rig
 from siggen.rig.rig_text import rig_text
 from tests.config.minimal import config as minimal

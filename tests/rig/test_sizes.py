@@ -10,18 +10,18 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.dynamics.structure.gear_stage import GearStage
+from siggen.drivetrain.gear_stage import GearStage
 from siggen.errors import ConfigError
 from siggen.gearbox.design import SetDesign
 from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.keys.number import bounds
 from siggen.names import Side
+from siggen.record.structure import structure, supported_stage
 from siggen.rig.bearings import LEAST_LIFE_H, life_h
 from siggen.rig.rating import rated_torque_nm
 from siggen.rig.rig import Rig, RigDesign
 from siggen.rig.rig_numbers import rig_numbers
 from siggen.rig.shafts import shaft_end_mm
-from siggen.specimen.structure import structure, supported_stage
 from tests.config.minimal import minimal
 
 STEEL_KG_M3 = 7850.0

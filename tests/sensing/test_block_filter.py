@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.sensing.block_filter import AHEAD, BlockGrid, block_grid, limited
-from siggen.sensing.spectral_filter import frequencies
+from siggen.sensing.filters import AHEAD, BlockGrid, block_grid, frequencies, limited
 from tests.sensing.resonances import accelerance
 
 FS = 25600.0

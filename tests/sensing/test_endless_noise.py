@@ -9,8 +9,7 @@ import pytest
 from scipy.signal import welch
 
 from siggen.sensing.modulation import LevelCourse
-from siggen.sensing.pink_noise import PinkStream
-from siggen.sensing.shaped_noise import ShapedNoise, shape_taps
+from siggen.sensing.noise import PinkStream, ShapedNoise, shape_taps
 
 FS = 25600.0
 

@@ -7,13 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 from siggen.seeding import Stream, generator
-from siggen.sensing.force_density import (
-    contact_bandwidth_hz,
-    contact_filter,
-    rising_floor,
-    tabulated,
-)
-from siggen.sensing.noise_spectrum import noise_spectrum
+from siggen.sensing.noise import contact_bandwidth_hz, contact_filter, noise_spectrum, rising_floor, tabulated
 
 FS, LENGTH = 25600.0, 51200
 GRID = np.arange(LENGTH // 2 + 1) * FS / LENGTH

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.sensing.frequency_response import FrequencyResponse, curve_problems, grid_problems
+from siggen.sensing.responses import FrequencyResponse, curve_problems, grid_problems
 from tests.sensing.resonances import accelerance
 
 KEY = ("vertical", "pinion_bearing/vertical")

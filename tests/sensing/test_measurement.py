@@ -8,8 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.sensing.measurement import Measurement, power_of_two_from
-from siggen.sensing.recorder import Recorder
+from siggen.sensing.measurement import Measurement, Recorder, power_of_two_from
 
 SINE = 100.0 * np.sin(2.0 * np.pi * np.arange(20000) / 97.0)
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.signal import hilbert
 
-from siggen.dynamics.drive.comb import harmonic_sum, turns_of
+from siggen.drivetrain.comb import harmonic_sum, turns_of
 from siggen.seeding import Stream, generator
 from siggen.sensing.modulation import LevelCourse, periodic_course, replayed, shaft_course, shaft_phasors
-from siggen.sensing.noise_spectrum import noise_spectrum
+from siggen.sensing.noise import noise_spectrum
 
 FS, LENGTH = 25600.0, 1 << 21
 FREQUENCY = np.arange(LENGTH // 2 + 1) * FS / LENGTH

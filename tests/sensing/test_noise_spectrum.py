@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.sensing.noise_spectrum import noise_spectrum
+from siggen.sensing.noise import noise_spectrum
 
 FS = 51200.0
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.sensing.sensor_response import high_pass_response, resonance_response
+from siggen.sensing.responses import high_pass_response, resonance_response
 
 
 def test_a_resonance_passes_low_frequencies_and_peaks_at_one_over_twice_its_damping() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.planning.plan import planned_record
+from siggen.gearbox.plan import planned_record
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from tests.sensors.runs import loaded, problems, record

@@ -12,7 +12,7 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord, record_schema
 from siggen.gearbox.configured import state_config
 from siggen.gearbox.design import SetDesign
-from siggen.sensing.recorder import Recorder
+from siggen.sensing.measurement import Recorder
 from siggen.sensors.converter import MOST_BITS, bits_of_noise
 from siggen.sets.drawn import set_columns
 from tests.config.minimal import by_name, minimal

@@ -12,8 +12,8 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.errors import ConfigError
 from siggen.gearbox.design import SetDesign
+from siggen.record.structure import axis_places_m
 from siggen.sets.drawn import set_columns
-from siggen.specimen.staged_structure import axis_places_m
 from tests.config.minimal import by_name
 from tests.config.staged import SLOW, staged
 from tests.simulated import simulate

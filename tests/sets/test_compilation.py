@@ -9,12 +9,12 @@ import pytest
 from numba.core.dispatcher import Dispatcher
 
 import siggen
+from siggen.damage import whole_loss
 from siggen.dataset.storage import LocalFolder
-from siggen.dynamics.time import exponential_step
 from siggen.engines.processes import ProcessEngine
 from siggen.engines.serial import SerialEngine
 from siggen.gearbox.design import SetDesign
-from siggen.gears.damage import whole_loss
+from siggen.motion import exponential_step
 from siggen.record import compilation
 from siggen.record.compilation import is_compiled, run_part
 from siggen.sets import drawn

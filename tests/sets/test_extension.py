@@ -12,7 +12,7 @@ import pytest
 
 from siggen.dataset.reading import open as open_set
 from siggen.errors import ConfigError, DatasetError, EngineError, UsageError
-from siggen.planning import plan
+from siggen.gearbox import plan
 from siggen.sets.extension import extend
 from siggen.sets.set_run import Generation
 from tests.dataset.fake_set import (

@@ -12,7 +12,7 @@ import pytest
 import siggen
 from siggen.dataset.seal import sealed, unsealed
 from siggen.errors import DatasetError
-from siggen.planning import plan
+from siggen.gearbox import plan
 from siggen.publication.publish import publish
 from siggen.sets.parts import generate_part, merge
 from siggen.sets.verification import verify

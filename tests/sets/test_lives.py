@@ -17,7 +17,7 @@ from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import ConfigError, UsageError
 from siggen.gearbox.description import class_words
-from siggen.planning.plan import plan
+from siggen.gearbox.plan import plan
 from siggen.sets.extension import extend
 from tests.config.minimal import by_name, minimal
 

@@ -11,7 +11,7 @@ import pytest
 from siggen.dataset.environment import environment, fingerprint
 from siggen.dataset.seal import sealed, unsealed
 from siggen.errors import DatasetError
-from siggen.planning import plan
+from siggen.gearbox import plan
 from siggen.sets.extension import extend
 from siggen.sets.parts import generate_part, merge
 from siggen.sets.set_run import Generation

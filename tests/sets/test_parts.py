@@ -11,7 +11,7 @@ from unittest.mock import patch
 import pytest
 
 from siggen.errors import DatasetError, EngineError, UsageError
-from siggen.planning import plan
+from siggen.gearbox import plan
 from siggen.sets.parts import generate_part, merge, part_of
 from siggen.sets.set_run import Generation
 from tests.dataset.fake_set import (

@@ -15,7 +15,7 @@ from siggen.dataset.object_store import ObjectStore
 from siggen.dataset.storage import LocalFolder, copy_object, sha256
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import DatasetError, EngineError
-from siggen.planning import plan
+from siggen.gearbox import plan
 from siggen.sets.extension import extend
 from siggen.sets.generation import generate
 from siggen.sets.parts import generate_part, merge

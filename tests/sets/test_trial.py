@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.planning.plan import planned_record
+from siggen.gearbox.plan import planned_record
 from siggen.sets.record_cost import START_S, RecordTime, SetCost, set_cost
 from siggen.sets.trial import RECORDS, TURNS, StateTrial, trial
 from tests.config.mill import mill

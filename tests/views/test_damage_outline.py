@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.gears.damage.outlines import rectangle
+from siggen.damage.outlines import rectangle
 from siggen.views.flank_views import outline_mm
 from tests.gears.builders import pit
 

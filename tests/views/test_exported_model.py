@@ -17,20 +17,20 @@ from typer.testing import CliRunner
 from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.config import by_reference
-from siggen.dynamics.time.equations import no_inputs
 from siggen.errors import UsageError
 from siggen.gearbox.configured import state_config
 from siggen.gearbox.design import SetDesign
-from siggen.planning.plan import planned_record
+from siggen.gearbox.plan import planned_record
+from siggen.motion.equations import no_inputs
+from siggen.record.drive import record_drive
+from siggen.record.motion import specimen_motion
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.drive import record_drive
-from siggen.specimen.motion import specimen_motion
 from siggen.views.exported_model import FORMAT_VERSION, exported_model
 from tests.config.minimal import by_name
 from tests.config.planets import SPALL as PLANET_SPALL
 from tests.config.planets import planets
+from tests.record.test_two_stages import two_stages
 from tests.simulated import drawn_record, internals_table
-from tests.specimen.test_two_stages import two_stages
 
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPT = ROOT / "docs" / "scripts" / "exported_model.py"

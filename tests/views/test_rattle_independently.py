@@ -14,10 +14,10 @@ import pytest
 from siggen.arrays import FloatArray
 from siggen.checks.loading import load_config
 from siggen.config import by_reference
-from siggen.dynamics.time.equations import no_inputs
-from siggen.planning.plan import planned_record
+from siggen.gearbox.plan import planned_record
+from siggen.motion.equations import no_inputs
+from siggen.record.motion import specimen_motion
 from siggen.record.specimen_state import specimen_state
-from siggen.specimen.motion import specimen_motion
 from siggen.views.exported_model import exported_model
 from tests.simulated import drawn_record
 from tests.views.test_exported_model import PINION, ROOT, by_scipy, largest

@@ -19,7 +19,7 @@ from diagnostics.indicators.classifier_table import table_notes
 from siggen.columns.record import SimulatedRecord
 from siggen.dataset.seal import sealed
 from siggen.gearbox.design import SetDesign
-from siggen.planning.plan import planned_record
+from siggen.gearbox.plan import planned_record
 from tests.dataset.fake_set import fake_config, fake_record, write_fake_set
 from tests.dataset.resealed_set import reseal
 

@@ -16,7 +16,7 @@ import diagnostics.cli.app
 import siggen.cli.app
 from diagnostics.cli.app import COMMANDS, main
 from diagnostics.records.recording import LABEL_NAMES, TACHO_NAME
-from siggen.columns.common_columns import operating_columns, target_columns
+from siggen.columns.labels import operating_columns, target_columns
 from siggen.columns.record import ID_COLUMNS, TACHO_COLUMN
 from siggen.dataset import reading
 from siggen.errors import UsageError, how_to_install

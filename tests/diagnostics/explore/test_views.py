@@ -13,8 +13,8 @@ from diagnostics.explore.set_source import flank_size, outlines
 from diagnostics.records.gear_train import pair_train
 from diagnostics.records.recording import Recording
 from diagnostics.signal.spectrum import envelope_spectrum
-from siggen.gears.damage.heights import flank_heights
-from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.damage.heights import flank_heights
+from siggen.gears.spur_gear import SpurGear
 from tests.diagnostics.explore.unpacked import steps
 
 TEETH = (10, 14)

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from siggen.dynamics.bearings.ball_bearing import BallBearing
-from siggen.dynamics.bearings.loaded_bearing import loaded_bearing
+from siggen.drivetrain.bearings import BallBearing, loaded_bearing
 from siggen.rig.bearings import BearingSize
 
 BEARING = BallBearing(9, 7.94e-3, 39.04e-3)

@@ -7,8 +7,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import minimize
 
-from siggen.dynamics.bearings.ball_bearing import BallBearing
-from siggen.dynamics.bearings.loaded_bearing import LoadedBearing, loaded_bearing
+from siggen.drivetrain.bearings import BallBearing, LoadedBearing, loaded_bearing
 
 
 def bearing(balls: int = 9, clearance_m: float = 0.0, angle_rad: float = 0.0) -> BallBearing:

@@ -8,11 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.bearings.ball_bearing import BallBearing
-from siggen.dynamics.bearings.bearing_spall import RollingSpall
-from siggen.dynamics.bearings.cage_course import cage_course
-from siggen.dynamics.bearings.spalled_bearing import SpalledBearing, mean_zone
-from siggen.dynamics.drive.drive import Drive
+from siggen.damage.bearing_spall import RollingSpall, SpalledBearing, cage_course, mean_zone
+from siggen.drivetrain.bearings import BallBearing
+from siggen.drivetrain.drive import Drive
 
 BALLS, BALL_M, PITCH_M = 9, 7.94e-3, 39.04e-3
 TURNS, POINTS = 20, 256_000  # 3200 points from ball to ball where four pass a turn: what folds back falls on lines

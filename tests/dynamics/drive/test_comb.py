@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.drive.comb import Comb, harmonic_sum, turns_of
+from siggen.drivetrain.comb import Comb, harmonic_sum, turns_of
 
 ANGLE = np.linspace(-40.0, 200.0, 3001)
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.dynamics.drive.drive import Drive
+from siggen.drivetrain.drive import Drive
 
 
 @given(speed=st.floats(1.0, 200.0), start=st.floats(-300.0, 300.0), duration=st.floats(0.01, 10.0))

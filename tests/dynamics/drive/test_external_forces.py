@@ -5,21 +5,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.drive.drive import Drive
-from siggen.dynamics.drive.excitation import Excitation, InputSource
-from siggen.dynamics.drive.external_forces import (
+from siggen.drivetrain.drive import Drive
+from siggen.drivetrain.excitation import (
+    Excitation,
+    InputSource,
     Unbalance,
     bearing_direction,
     shaft_directions,
     turning_sense,
 )
-from siggen.dynamics.drive.speed_ramp import SpeedRamp
-from siggen.dynamics.drive.varying_drive import VaryingDrive
-from siggen.dynamics.structure.gear_stage import Bearing, GearStage
-from siggen.dynamics.structure.structure import Structure, vector
-from siggen.dynamics.time.linear_motion import LinearMotion
-from siggen.dynamics.time.response import Response, SampleGrid, response_of
-from siggen.gears.stiffness.mesh_tables import MeshTables
+from siggen.drivetrain.gear_stage import Bearing, GearStage
+from siggen.drivetrain.structure import Structure, vector
+from siggen.drivetrain.varying_drive import SpeedRamp, VaryingDrive
+from siggen.mesh.mesh_tables import MeshTables
+from siggen.motion.linear_motion import LinearMotion
+from siggen.motion.response import Response, SampleGrid, response_of
 from tests.dynamics.casing_stage import make_structure as casing
 from tests.dynamics.conftest import BASE_RADIUS_1, BASE_RADIUS_2, make_stage
 from tests.dynamics.trains import eight_dof

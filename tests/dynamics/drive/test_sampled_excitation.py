@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from siggen.dynamics.drive.drive import Drive
-from siggen.dynamics.drive.sampled_excitation import COARSEST_HZ, MARGIN, SampledExcitation, _knots
+from siggen.drivetrain.drive import Drive
+from siggen.drivetrain.excitation import COARSEST_HZ, MARGIN, SampledExcitation, _knots
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -6,22 +6,25 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from siggen.dynamics.drive.drive import Drive, Rotation
-from siggen.dynamics.drive.excitation import Excitation, SpeedDeviation
-from siggen.dynamics.drive.slow_variation import slow_variation
-from siggen.dynamics.drive.speed_ramp import SpeedRamp
-from siggen.dynamics.drive.torque_variation import TorqueSettings, TorqueVariation
-from siggen.dynamics.drive.varying_drive import Ripple, VaryingDrive
-from siggen.dynamics.friction.friction import constant_friction
-from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.mesh.pair_columns import FRICTION, POSITION, SLIDING
-from siggen.dynamics.structure.shaft_lines import rigid_rotation
-from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.equations import state_rate
-from siggen.dynamics.time.linear_motion import LinearMotion
-from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
-from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
-from siggen.gears.stiffness.mesh_tables import MeshTables
+from siggen.drivetrain.drive import Drive, Rotation
+from siggen.drivetrain.excitation import Excitation, SpeedDeviation
+from siggen.drivetrain.structure import Structure, rigid_rotation
+from siggen.drivetrain.varying_drive import (
+    Ripple,
+    SpeedRamp,
+    TorqueSettings,
+    TorqueVariation,
+    VaryingDrive,
+    slow_variation,
+)
+from siggen.mesh.friction import constant_friction
+from siggen.mesh.mesh_force import mean_mesh_stiffness
+from siggen.mesh.mesh_tables import MeshTables
+from siggen.mesh.pair_columns import FRICTION, POSITION, SLIDING
+from siggen.motion.equations import state_rate
+from siggen.motion.linear_motion import LinearMotion
+from siggen.motion.pair_motion import MeanState, PairMesh, PairMotion
+from siggen.motion.response import Response, SampleGrid, Wanted, response_of
 from tests.dynamics.casing_stage import make_structure as casing
 from tests.dynamics.pair_runs import TORQUE, law, tables
 

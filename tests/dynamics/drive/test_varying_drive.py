@@ -5,9 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.dynamics.drive.slow_variation import SlowVariation, slow_variation
-from siggen.dynamics.drive.speed_ramp import SpeedRamp
-from siggen.dynamics.drive.varying_drive import Ripple, VaryingDrive
+from siggen.drivetrain.varying_drive import Ripple, SlowVariation, SpeedRamp, VaryingDrive, slow_variation
 
 TURN = 2.0 * np.pi
 

@@ -11,9 +11,9 @@ from math import pi
 
 import numpy as np
 
-from siggen.dynamics.friction.contact_kinematics import sliding_speed
-from siggen.dynamics.friction.friction import FrictionLaw, friction_coefficient
-from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.gear_pair import GearPair
+from siggen.mesh.friction import FrictionLaw, friction_coefficient
+from siggen.mesh.lubrication import sliding_speed
 
 
 def loss_factor(pair: GearPair) -> float:

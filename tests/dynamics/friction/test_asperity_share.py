@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.dynamics.friction.asperity_share import asperity_load_share
-from siggen.dynamics.friction.asperity_table import share_at
+from siggen.mesh.asperities import share_at
+from siggen.mesh.lubrication import asperity_load_share
 from tests.dynamics.lubricated import FORCE, PITCH_POINT, RANGE, mesh
 
 

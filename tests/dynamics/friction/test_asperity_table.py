@@ -5,16 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.dynamics.friction.asperity_table import (
-    AsperityTable,
-    asperity_share,
-    asperity_table,
-    mixed_contact,
-    share_at,
-)
-from siggen.dynamics.friction.contact_kinematics import relative_radius
-from siggen.dynamics.friction.film_traction import film_traction
-from siggen.dynamics.friction.lubrication import LubricatedMesh
+from siggen.mesh.asperities import AsperityTable, asperity_share, asperity_table, mixed_contact, share_at
+from siggen.mesh.lubrication import LubricatedMesh, film_traction, relative_radius
 from tests.dynamics.lubricated import FORCE, PITCH_POINT, RANGE, mesh
 
 ROUGHNESS = (0.1e-6, 0.57e-6, 2.04e-6, 5e-6)

@@ -8,13 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from siggen.dynamics.friction.contact_kinematics import (
-    effective_modulus,
-    entrainment_speed,
-    hertz_pressure,
-    relative_radius,
-    sliding_speed,
-)
+from siggen.mesh.lubrication import effective_modulus, entrainment_speed, hertz_pressure, relative_radius, sliding_speed
 from tests.dynamics.lubricated import FORCE, LINE, MODULUS, PITCH_POINT, SPEED_1, SPEED_2
 
 

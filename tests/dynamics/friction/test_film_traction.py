@@ -8,11 +8,16 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from siggen.dynamics.friction.asperity_table import share_at
-from siggen.dynamics.friction.contact_kinematics import hertz_half_width, relative_radius, sliding_speed
-from siggen.dynamics.friction.film_traction import film_traction
-from siggen.dynamics.friction.lubrication import LubricatedMesh, central_film_m
-from siggen.dynamics.friction.oil import MINERAL_OILS
+from siggen.mesh.asperities import share_at
+from siggen.mesh.lubrication import (
+    LubricatedMesh,
+    central_film_m,
+    film_traction,
+    hertz_half_width,
+    relative_radius,
+    sliding_speed,
+)
+from siggen.mesh.oil import MINERAL_OILS
 from tests.dynamics.lubricated import FORCE, LINE, MODULUS, PITCH_POINT, RANGE, mesh
 
 ROUGH_M = 0.57e-6

@@ -5,12 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.dynamics.friction.asperity_table import asperity_table, mixed_contact
-from siggen.dynamics.friction.friction import (
-    composite_friction,
-    constant_friction,
-    friction_coefficient,
-)
+from siggen.mesh.asperities import asperity_table, mixed_contact
+from siggen.mesh.friction import composite_friction, constant_friction, friction_coefficient
 from tests.dynamics.lubricated import FORCE, PITCH_POINT, RANGE, mesh
 
 ROUGHNESS = (0.57e-6, 2.04e-6, 5e-6)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.dynamics.friction.lubrication import LOAD_FLOOR, LubricatedMesh, central_film_m, film_ratio
+from siggen.mesh.lubrication import LOAD_FLOOR, LubricatedMesh, central_film_m, film_ratio
 from tests.dynamics.lubricated import FORCE, PITCH_POINT, RANGE, mesh
 
 

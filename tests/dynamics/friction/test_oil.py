@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.friction.oil import MINERAL_OILS
+from siggen.mesh.oil import MINERAL_OILS
 
 VG220 = MINERAL_OILS["ISO VG 220"]
 

@@ -10,16 +10,9 @@ from scipy.integrate import quad
 from scipy.optimize import brentq, minimize_scalar
 from scipy.stats import norm
 
-from siggen.dynamics.friction.asperity_table import share_at
-from siggen.dynamics.friction.contact_kinematics import entrainment_speed, hertz_half_width, relative_radius
-from siggen.dynamics.friction.lubrication import LubricatedMesh, central_film_m
-from siggen.dynamics.friction.reversal import (
-    TURN_OVER_SLIP_SPEED,
-    PitchPoint,
-    gaussian_integral,
-    presliding_m,
-    slip_speed,
-)
+from siggen.mesh.asperities import share_at
+from siggen.mesh.friction import TURN_OVER_SLIP_SPEED, PitchPoint, gaussian_integral, presliding_m, slip_speed
+from siggen.mesh.lubrication import LubricatedMesh, central_film_m, entrainment_speed, hertz_half_width, relative_radius
 from tests.dynamics.lubricated import FORCE, LINE, MODULUS, PAIR, PITCH_POINT, mesh
 
 ROUGH_M = 0.57e-6

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.friction.rubbing_course import rubbing_course
+from siggen.mesh.asperities import rubbing_course
 from tests.dynamics.pair_runs import gear_pair
 
 

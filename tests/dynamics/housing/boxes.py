@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from siggen.dynamics.housing.box import Bolt, Box, Material, Seat, Thicknesses
-from siggen.dynamics.housing.half_functions import HalfFunctions
-from siggen.dynamics.housing.housing_modes import degrees
-from siggen.dynamics.housing.motion import WallMotion, seat_motions
+from siggen.drivetrain.box import Bolt, Box, Material, Seat, Thicknesses
+from siggen.drivetrain.box_functions import HalfFunctions
+from siggen.drivetrain.housing_modes import WallMotion, degrees, seat_motions
 
 IRON = Material(1.1e11, 0.26, 7200.0)
 STEEL = Material(2.06e11, 0.3, 7850.0)

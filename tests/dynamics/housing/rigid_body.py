@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import eigh
 
-from siggen.dynamics.housing.box import SIDES, Box, plane_axes
+from siggen.drivetrain.box import SIDES, Box, plane_axes
 
 POINTS = 200
 

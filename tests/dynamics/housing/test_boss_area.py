@@ -5,8 +5,8 @@ from math import pi
 
 import pytest
 
-from siggen.dynamics.housing.boss_area import bore_area, boss_area
-from siggen.dynamics.housing.box import Seat, common_area_m2
+from siggen.drivetrain.box import Seat, common_area_m2
+from siggen.drivetrain.box_energy import bore_area, boss_area
 
 LARGE = Seat(0.060, 0.091, 0.0381, 0.0508, 0.0143)
 SMALL = Seat(0.125, 0.091, 0.0236, 0.0283, 0.0143)

@@ -5,14 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.housing.box import Axis, Box, Thicknesses
-from siggen.dynamics.housing.housing_modes import (
+from siggen.drivetrain.box import Axis, Box, Thicknesses
+from siggen.drivetrain.box_energy import sheet
+from siggen.drivetrain.housing_modes import (
     HousingModes,
+    PlatePlace,
+    TableModes,
+    bolt_motions,
     housing_modes,
+    motion_at,
+    table_motion,
 )
-from siggen.dynamics.housing.modes import TableModes, table_motion
-from siggen.dynamics.housing.motion import PlatePlace, bolt_motions, motion_at
-from siggen.dynamics.housing.plate_energy import sheet
 from tests.dynamics.housing.boxes import BOLTS, IRON, STEEL, box_motions, iron_box
 from tests.dynamics.housing.rigid_body import rigid_box_hz
 from tests.dynamics.housing.timoshenko_beam import free_bending_hz

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 from scipy.linalg import block_diag, cho_factor, cho_solve, eigh
 
-from siggen.dynamics.housing.box import Axis
-from siggen.dynamics.housing.box_energy import box_energy
-from siggen.dynamics.housing.housing_modes import HousingModes, housing_modes
-from siggen.dynamics.housing.loose_foot import LoosenedModes, loosened, springs
-from siggen.dynamics.housing.motion import PlatePlace, WallMotion, bolt_motions, motion_at
+from siggen.drivetrain.box import Axis
+from siggen.drivetrain.box_energy import box_energy
+from siggen.drivetrain.housing_modes import HousingModes, PlatePlace, WallMotion, bolt_motions, housing_modes, motion_at
+from siggen.drivetrain.loose_foot import LoosenedModes, loosened, springs
 from tests.dynamics.housing.boxes import IRON, box_motions, iron_box
 from tests.dynamics.housing.rigid_body import rigid_box_hz
 from tests.reference.housing.solid_box import solid_box

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from siggen.dynamics.housing.box import SIDES, Axis, Box, Rib, Strip, plane_axes
-from siggen.dynamics.housing.box_energy import box_energy
-from siggen.dynamics.housing.line_functions import VALUE
-from siggen.dynamics.housing.plate_energy import Energies, add_even_plate, sheet
+from siggen.drivetrain.box import SIDES, Axis, Box, Rib, Strip, plane_axes
+from siggen.drivetrain.box_energy import Energies, add_even_plate, box_energy, sheet
+from siggen.drivetrain.box_functions import VALUE
 from tests.dynamics.housing.boxes import IRON, halves_of, iron_box
 
 

@@ -12,8 +12,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[3]
 PROGRAM = """
 import hashlib
-from siggen.dynamics.housing.housing_modes import housing_modes
-from siggen.dynamics.housing.loose_foot import loosened
+from siggen.drivetrain.housing_modes import housing_modes
+from siggen.drivetrain.loose_foot import loosened
 from tests.dynamics.housing.boxes import box_motions, iron_box
 box = iron_box()
 sound = housing_modes(box, 6000.0)

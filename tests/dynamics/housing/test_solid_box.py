@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from siggen.dynamics.housing.housing_modes import housing_modes
+from siggen.drivetrain.housing_modes import housing_modes
 from tests.dynamics.housing.boxes import IRON, iron_box
 from tests.reference.housing.solid_box import solid_box
 from tests.reference.housing.solid_element import CORNERS, element_matrices

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from siggen.dynamics.housing.stiff_pencil import lowest_modes
+from siggen.drivetrain.stiff_pencil import lowest_modes
 
 
 def pencil(n: int) -> tuple[np.ndarray, np.ndarray]:

@@ -5,21 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.mesh.pair_columns import CARRYING, NORMAL, PENETRATION, POSITION, ROUGH, STIFFNESS
-from siggen.dynamics.mesh.pair_forces import pair_forces, static_approach_m, static_force
-from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
-from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.gears.contact.contact_table import ContactTable, contact_table
-from siggen.gears.contact.table_columns import node_places_m
-from siggen.gears.contact.table_options import TableOptions
-from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import FlankSpall
-from siggen.gears.damage.tooth_damage import Damage
-from siggen.gears.geometry.missing_material import missing_material
-from siggen.gears.stiffness.body_coupling import body_coupling
-from siggen.gears.stiffness.mesh_tables import mesh_tables
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.specimen.contact import whole_face
+from siggen.damage.outlines import rectangle
+from siggen.damage.part import Damage
+from siggen.damage.spalls import FlankSpall
+from siggen.gears.missing_material import missing_material
+from siggen.mesh.body_coupling import body_coupling
+from siggen.mesh.contact_table import ContactTable, contact_table, node_places_m
+from siggen.mesh.mesh_tables import mesh_tables
+from siggen.mesh.node_forces import pair_forces, static_approach_m, static_force
+from siggen.mesh.pair_columns import CARRYING, NORMAL, PENETRATION, POSITION, ROUGH, STIFFNESS
+from siggen.mesh.pair_law import MeshConstants, PairLaw, pair_law
+from siggen.mesh.pair_springs import pair_table
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.table_options import TableOptions
+from siggen.record.contact import whole_face
 from tests.dynamics.pair_runs import RELIEF, gear_pair
 
 TEETH = StiffnessOptions()

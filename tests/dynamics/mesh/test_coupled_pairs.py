@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
-from siggen.dynamics.mesh.pair_columns import NORMAL
-from siggen.dynamics.mesh.pair_forces import pair_forces
-from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
-from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.gears.geometry.missing_material import missing_material
+from siggen.gears.missing_material import missing_material
+from siggen.mesh.node_forces import pair_forces
+from siggen.mesh.pair_columns import NORMAL
+from siggen.mesh.pair_law import MeshConstants, PairLaw, pair_law
+from siggen.mesh.pair_springs import pair_table
 from tests.dynamics.casing_stage import make_structure
 from tests.dynamics.pair_runs import (
     RELIEF,

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.mesh.pair_columns import DAMPING, STIFFNESS
-from siggen.dynamics.mesh.pair_forces import pair_forces
-from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.gears.geometry.missing_material import missing_material
+from siggen.gears.missing_material import missing_material
+from siggen.mesh.node_forces import pair_forces
+from siggen.mesh.pair_columns import DAMPING, STIFFNESS
+from siggen.mesh.pair_law import PairLaw
+from siggen.mesh.pair_springs import pair_table
 from tests.dynamics.pair_runs import gear_pair, law
 
 FILM, LENGTH, OIL = 0.8e-6, 20e-3, 0.112

@@ -7,12 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from siggen.dynamics.friction.asperity_table import asperity_table
-from siggen.dynamics.friction.friction import composite_friction
-from siggen.dynamics.mesh.lane_forces import NOT_HERE, write_lane_forces
-from siggen.dynamics.mesh.lane_table import lane_table
-from siggen.dynamics.mesh.node_forces import write_node_forces
-from siggen.dynamics.mesh.pair_columns import (
+from siggen.damage.outlines import rectangle
+from siggen.damage.spalls import FlankSpall
+from siggen.gears.missing_material import missing_material
+from siggen.lanes import LANES
+from siggen.mesh.asperities import asperity_table
+from siggen.mesh.body_coupling import body_coupling
+from siggen.mesh.contact_table import contact_table
+from siggen.mesh.friction import composite_friction
+from siggen.mesh.lane_forces import NOT_HERE, lane_table, write_lane_forces
+from siggen.mesh.node_forces import write_node_forces
+from siggen.mesh.pair_columns import (
     NODE_APPROACH,
     NODE_NORMAL,
     NODE_RATE,
@@ -25,19 +30,13 @@ from siggen.dynamics.mesh.pair_columns import (
     SPRUNG,
     STIFFNESS,
 )
-from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.dynamics.mesh.two_springs import SMOOTH_CHANGE
-from siggen.dynamics.time.exponential_scheme import NODES
-from siggen.gears.contact.contact_table import contact_table
-from siggen.gears.contact.table_options import TableOptions, face_slices
-from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import FlankSpall
-from siggen.gears.geometry.missing_material import missing_material
-from siggen.gears.stiffness.body_coupling import body_coupling
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.lanes import LANES
-from siggen.specimen.contact import whole_face
+from siggen.mesh.pair_law import PairLaw
+from siggen.mesh.pair_springs import pair_table
+from siggen.mesh.springs import SMOOTH_CHANGE
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.table_options import TableOptions, face_slices
+from siggen.motion.exponential_scheme import NODES
+from siggen.record.contact import whole_face
 from tests.dynamics.lubricated import RANGE, mesh
 from tests.dynamics.pair_runs import RELIEF, gear_pair, law
 

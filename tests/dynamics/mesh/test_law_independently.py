@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from siggen.dynamics.mesh.damping import DampingLaw
-from siggen.dynamics.mesh.law_tables import law_tables
-from siggen.dynamics.mesh.node_forces import write_node_forces
-from siggen.dynamics.mesh.pair_columns import (
+from siggen.mesh.law_tables import law_tables
+from siggen.mesh.node_forces import write_forces, write_node_forces
+from siggen.mesh.pair_columns import (
     NODE_APPROACH,
     NODE_ARM,
     NODE_FRICTION,
@@ -30,10 +29,10 @@ from siggen.dynamics.mesh.pair_columns import (
     NODE_TILT_RATE,
     NODE_TURN,
 )
-from siggen.dynamics.mesh.pair_forces import write_forces
-from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.dynamics.mesh.two_springs import EXACT_CHANGE, SMOOTH_CHANGE
+from siggen.mesh.pair_law import PairLaw
+from siggen.mesh.pair_springs import pair_table
+from siggen.mesh.springs import EXACT_CHANGE, SMOOTH_CHANGE
+from siggen.mesh.tooth_law import DampingLaw
 from tests.dynamics.mesh.test_lane_forces import spalled
 
 SCRIPT = Path(__file__).resolve().parents[3] / "docs" / "scripts" / "exported_law.py"

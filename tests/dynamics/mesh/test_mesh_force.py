@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness, mesh_force, mesh_law, mesh_stiffness, table_row
-from siggen.gears.stiffness.mesh_tables import MeshTables
+from siggen.mesh.mesh_force import mean_mesh_stiffness, mesh_force, mesh_law, mesh_stiffness, table_row
+from siggen.mesh.mesh_tables import MeshTables
 from tests.dynamics.conftest import CONTACT_RATIO, make_tables
 
 

@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.friction.asperity_table import asperity_table, mixed_contact
-from siggen.dynamics.friction.friction import composite_friction
-from siggen.dynamics.mesh.contact_names import OF_CONTACT_ALONE
-from siggen.dynamics.mesh.damping import DampingLaw
-from siggen.dynamics.mesh.pair_columns import (
+from siggen.damage.part import Damage
+from siggen.mesh.asperities import asperity_table, mixed_contact
+from siggen.mesh.contact_names import OF_CONTACT_ALONE
+from siggen.mesh.friction import composite_friction
+from siggen.mesh.node_forces import pair_forces
+from siggen.mesh.pair_columns import (
     ASPERITY_SHARE,
     CARRYING,
     COEFFICIENT,
@@ -22,11 +23,10 @@ from siggen.dynamics.mesh.pair_columns import (
     ROUGH,
     STIFFNESS,
 )
-from siggen.dynamics.mesh.pair_forces import pair_forces
-from siggen.dynamics.mesh.pair_internals import PairContact, pair_internal_names, pair_internals
-from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.gears.damage.tooth_damage import Damage
+from siggen.mesh.pair_internals import PairContact, pair_internal_names, pair_internals
+from siggen.mesh.pair_law import PairLaw
+from siggen.mesh.pair_springs import pair_table
+from siggen.mesh.tooth_law import DampingLaw
 from tests.dynamics.lubricated import FORCE, LINE, MODULUS, PITCH_POINT, RANGE, mesh
 from tests.dynamics.pair_runs import contact_law, gear_pair
 from tests.gears.pit_shapes import chord_pit

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.dynamics.friction.friction import constant_friction
-from siggen.dynamics.mesh.pair_columns import FRICTION, NORMAL, PENETRATION, POSITION, STIFFNESS
-from siggen.dynamics.mesh.pair_forces import pair_forces, static_approach_m
-from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
+from siggen.gears.missing_material import MissingMaterial, missing_material
+from siggen.mesh.friction import constant_friction
+from siggen.mesh.node_forces import pair_forces, static_approach_m
+from siggen.mesh.pair_columns import FRICTION, NORMAL, PENETRATION, POSITION, STIFFNESS
+from siggen.mesh.pair_law import PairLaw
+from siggen.mesh.pair_springs import pair_table
 from tests.dynamics.pair_runs import gear_pair, law, tables
 
 DOUBLE, SINGLE = 5.3, 5.85

@@ -7,16 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.friction.contact_kinematics import relative_radius
-from siggen.dynamics.mesh.static_stiffness import (
+from siggen.mesh.lubrication import relative_radius
+from siggen.mesh.mesh_stiffness import mesh_stiffness
+from siggen.mesh.mesh_tables import mesh_tables
+from siggen.mesh.static_mesh import (
     largest_secant_loss,
     pairs_before_damage,
     secant_stiffness_n_per_m,
     static_approaches_m,
 )
-from siggen.dynamics.time.equations import no_inputs
-from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
-from siggen.gears.stiffness.mesh_tables import mesh_tables
+from siggen.motion.equations import no_inputs
 from tests.dynamics.casing_stage import make_structure
 from tests.dynamics.pair_runs import TEETH, columns, contact_law, exact_involutes, gear_pair, law, motion, tables
 from tests.gears.pit_shapes import chord_pit

@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.free_rotation import static_solution
-from siggen.dynamics.structure.gear_stage import Shaft
-from siggen.dynamics.structure.makers import train
-from siggen.dynamics.structure.structure import Structure, assembled, on_back_flanks, vector
+from siggen.drivetrain.gear_stage import Shaft
+from siggen.drivetrain.makers import train
+from siggen.drivetrain.structure import Structure, assembled, on_back_flanks, static_solution, vector
 from tests.dynamics.casing_stage import BASE_RADIUS_1, MEAN_STIFFNESS, PRESSURE_ANGLE, make_casing, make_stage
 from tests.dynamics.trains import casing_of, casing_structure, eight_dof
 

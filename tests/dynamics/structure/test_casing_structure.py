@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.free_rotation import static_solution
-from siggen.dynamics.structure.structure import vector
+from siggen.drivetrain.structure import static_solution, vector
 from tests.dynamics.casing_stage import (
     BASE_RADIUS_1,
     MEAN_STIFFNESS,

@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 
 from siggen.arrays import FloatArray
-from siggen.dynamics.structure.free_rotation import static_solution
-from siggen.dynamics.structure.gear_stage import Bearing, CommonShaft, Coupling, NextStage, Rotor
-from siggen.dynamics.structure.shaft_lines import rigid_rotation
-from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.equations import mesh_springs
-from siggen.dynamics.time.modes import natural_modes
+from siggen.drivetrain.gear_stage import Bearing, CommonShaft, Coupling, NextStage, Rotor
+from siggen.drivetrain.structure import Structure, rigid_rotation, static_solution
+from siggen.motion.equations import mesh_springs
+from siggen.motion.modes import natural_modes
 from tests.dynamics.casing_stage import bearing, make_stage
 from tests.dynamics.trains import eight_dof, stages
 

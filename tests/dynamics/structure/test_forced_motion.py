@@ -5,16 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.drive.drive import Drive, Turning
-from siggen.dynamics.drive.excitation import Excitation, InputSource
-from siggen.dynamics.drive.external_forces import bearing_direction
-from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
-from siggen.dynamics.structure.forced_responses import TOGETHER
-from siggen.dynamics.structure.load_lock import locked_load
-from siggen.dynamics.time.linear_motion import LinearMotion
-from siggen.dynamics.time.response import SampleGrid, response_of
-from siggen.gears.stiffness.mesh_tables import MeshTables
+from siggen.drivetrain.drive import Drive, Turning
+from siggen.drivetrain.excitation import Excitation, InputSource, bearing_direction
+from siggen.drivetrain.forced_motion import TOGETHER, MeanMesh, forced_motion
+from siggen.drivetrain.structure import locked_load
+from siggen.mesh.mesh_force import mean_mesh_stiffness
+from siggen.mesh.mesh_tables import MeshTables
+from siggen.motion.linear_motion import LinearMotion
+from siggen.motion.response import SampleGrid, response_of
 from tests.dynamics.casing_stage import make_structure
 
 FS = 51200.0

@@ -7,11 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.forced_motion import MeanMesh, forced_motion
-from siggen.dynamics.structure.gear_stage import Base
-from siggen.dynamics.structure.load_lock import locked_load
-from siggen.dynamics.structure.makers import on_base
-from siggen.dynamics.structure.structure import assembled
+from siggen.drivetrain.forced_motion import MeanMesh, forced_motion
+from siggen.drivetrain.gear_stage import Base
+from siggen.drivetrain.makers import on_base
+from siggen.drivetrain.structure import assembled, locked_load
 from tests.dynamics.casing_stage import make_casing, make_stage, make_structure
 from tests.dynamics.trains import casing_structure, eight_dof
 

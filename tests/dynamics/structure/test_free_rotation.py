@@ -3,11 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.free_rotation import elastic_basis, free_rotations, static_solution
-from siggen.dynamics.structure.load_lock import locked_load
-from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.equations import equations_about
-from siggen.dynamics.time.modes import slowest_decay_per_s
+from siggen.drivetrain.structure import Structure, elastic_basis, free_rotations, locked_load, static_solution
+from siggen.motion.equations import equations_about
+from siggen.motion.modes import slowest_decay_per_s
 from tests.dynamics.casing_stage import (
     BASE_RADIUS_1,
     MEAN_STIFFNESS,

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.drivetrain import Body, Drivetrain, Mesh, MeshGear, Place, spring
-from siggen.dynamics.structure.gear_stage import (
+from siggen.drivetrain.drivetrain import Body, Drivetrain, Mesh, MeshGear, Place, spring
+from siggen.drivetrain.gear_stage import (
     Base,
     Bolts,
     Casing,
@@ -22,9 +22,8 @@ from siggen.dynamics.structure.gear_stage import (
     Shaft,
     cantilever_compliance_m_per_n,
 )
-from siggen.dynamics.structure.makers import on_base, planetary_train, train
-from siggen.dynamics.structure.shaft_lines import rigid_rotation
-from siggen.dynamics.structure.structure import Structure, assembled, on_back_flanks
+from siggen.drivetrain.makers import on_base, planetary_train, train
+from siggen.drivetrain.structure import Structure, assembled, on_back_flanks, rigid_rotation
 from tests.dynamics.casing_stage import bearing, make_casing, make_stage
 from tests.dynamics.planetary_set import planetary_stage
 from tests.dynamics.trains import casing_of, stages

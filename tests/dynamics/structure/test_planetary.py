@@ -8,11 +8,9 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from siggen.dynamics.structure.fixed_frame import in_space
-from siggen.dynamics.structure.free_rotation import free_rotations, static_solution
-from siggen.dynamics.structure.gear_stage import Coupling, PlanetaryBody, PlanetaryStage
-from siggen.dynamics.structure.shaft_lines import rigid_rotation, rolling
-from siggen.dynamics.time.equations import equations_about, mesh_springs
+from siggen.drivetrain.gear_stage import Coupling, PlanetaryBody, PlanetaryStage
+from siggen.drivetrain.structure import free_rotations, in_space, rigid_rotation, rolling, static_solution
+from siggen.motion.equations import equations_about, mesh_springs
 from tests.dynamics.planetary_set import pairs, planetary_stage
 from tests.dynamics.trains import planetary_structure
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.drivetrain import Body, Drivetrain, Element, Modes, Place, spring
-from siggen.dynamics.structure.structure import Structure, assembled, matrices
+from siggen.drivetrain.drivetrain import Body, Drivetrain, Element, Modes, Place, spring
+from siggen.drivetrain.structure import Structure, assembled, matrices
 
 SEATS = ("a/vertical", "b/horizontal", "c/axial")
 FLEXIBILITY = 1e-9 * np.array([[2.0, 0.7, 0.0], [0.7, 3.0, 0.1], [0.0, 0.1, 5.0]])

@@ -3,8 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.gear_stage import GearStage
-from siggen.dynamics.structure.structure import Structure, vector
+from siggen.drivetrain.gear_stage import GearStage
+from siggen.drivetrain.structure import Structure, vector
 from tests.dynamics.trains import eight_dof
 
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.drivetrain import Element
-from siggen.dynamics.structure.gear_stage import Bearing, Shaft, cantilever_compliance_m_per_n
-from siggen.dynamics.structure.structure import Structure
+from siggen.drivetrain.drivetrain import Element
+from siggen.drivetrain.gear_stage import Bearing, Shaft, cantilever_compliance_m_per_n
+from siggen.drivetrain.structure import Structure
 from tests.dynamics.casing_stage import MEAN_STIFFNESS, PRESSURE_ANGLE, make_casing, make_stage, make_structure
 from tests.dynamics.natural_frequencies import natural_frequencies_hz
 from tests.dynamics.trains import casing_structure

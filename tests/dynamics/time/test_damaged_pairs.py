@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.drive.drive import Drive
-from siggen.dynamics.friction.contact_kinematics import relative_radius
-from siggen.dynamics.mesh.pair_columns import CARRYING, NORMAL
-from siggen.dynamics.mesh.pair_forces import pair_forces, static_approach_m, static_force
-from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.dynamics.time.response import SampleGrid, response_of
+from siggen.drivetrain.drive import Drive
+from siggen.mesh.lubrication import relative_radius
+from siggen.mesh.node_forces import pair_forces, static_approach_m, static_force
+from siggen.mesh.pair_columns import CARRYING, NORMAL
+from siggen.mesh.pair_law import PairLaw
+from siggen.mesh.pair_springs import pair_table
+from siggen.motion.response import SampleGrid, response_of
 from tests.dynamics.casing_stage import make_structure
 from tests.dynamics.pair_runs import columns, contact_law, contact_of, gear_pair, motion, settled
 from tests.gears.pit_shapes import chord_pit

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.time.decimation import Decimator, half_length, second_difference_taps, value_taps
+from siggen.motion.decimation import Decimator, half_length, second_difference_taps, value_taps
 
 
 def gains_db(taps: np.ndarray, omega: np.ndarray, divisor: np.ndarray) -> np.ndarray:

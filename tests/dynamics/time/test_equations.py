@@ -3,11 +3,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.mesh.mesh_force import mesh_law, mesh_stiffness
-from siggen.dynamics.structure.free_rotation import static_solution
-from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.equations import approach_of, equations_of_motion, start_state
-from siggen.gears.stiffness.mesh_tables import MeshTables
+from siggen.drivetrain.structure import Structure, static_solution
+from siggen.mesh.mesh_force import mesh_law, mesh_stiffness
+from siggen.mesh.mesh_tables import MeshTables
+from siggen.motion.equations import approach_of, equations_of_motion, start_state
 from tests.dynamics.conftest import BASE_RADIUS_1
 from tests.dynamics.integration_runs import FIRST_PITCHES, model, rate
 

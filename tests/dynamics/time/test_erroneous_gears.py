@@ -7,10 +7,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from siggen.dynamics.mesh.pair_forces import static_approach_m
-from siggen.gears.errors.gear_errors import GearErrors
-from siggen.gears.errors.tooth_errors import with_errors
-from siggen.gears.geometry.missing_material import missing_material
+from siggen.gears.errors import GearErrors, with_errors
+from siggen.gears.missing_material import missing_material
+from siggen.mesh.node_forces import static_approach_m
 from tests.dynamics.casing_stage import make_structure
 from tests.dynamics.pair_runs import MESHES, RELIEF, TORQUE, columns, gear_pair, law, motion, settled
 from tests.gears.erroneous_gears import drawn, only_eccentric

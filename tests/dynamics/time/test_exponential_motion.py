@@ -5,16 +5,15 @@ from functools import cache
 import numpy as np
 import pytest
 
-from siggen.dynamics.friction.friction import constant_friction
-from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.mesh.pair_columns import FRICTION, NORMAL, POSITION
-from siggen.dynamics.mesh.pair_law import PairLaw
-from siggen.dynamics.structure.shaft_lines import without_drift
-from siggen.dynamics.structure.structure import vector
-from siggen.dynamics.time.equations import no_inputs, state_matrix
-from siggen.dynamics.time.exponential_motion import ExponentialMotion
-from siggen.dynamics.time.matrix_exponential import matrix_exponential
-from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
+from siggen.drivetrain.structure import vector, without_drift
+from siggen.mesh.friction import constant_friction
+from siggen.mesh.mesh_force import mean_mesh_stiffness
+from siggen.mesh.pair_columns import FRICTION, NORMAL, POSITION
+from siggen.mesh.pair_law import PairLaw
+from siggen.motion.equations import no_inputs, state_matrix
+from siggen.motion.exponential_motion import ExponentialMotion
+from siggen.motion.exponential_scheme import matrix_exponential
+from siggen.motion.pair_motion import MeanState, PairMesh, PairMotion
 from tests.dynamics.casing_stage import PRESSURE_ANGLE, make_structure
 from tests.dynamics.pair_runs import TORQUE, constant_tables, exact_involutes, law, tables
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.dynamics.friction.friction import constant_friction
-from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, POSITION, SLIDING
-from siggen.dynamics.time.pair_motion import PairMotion
-from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
-from siggen.planning.plan import planned_record
+from siggen.gearbox.plan import planned_record
+from siggen.gears.missing_material import MissingMaterial, missing_material
+from siggen.mesh.friction import constant_friction
+from siggen.mesh.pair_columns import FLANK, FRICTION, POSITION, SLIDING
+from siggen.motion.pair_motion import PairMotion
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
 from tests.dynamics.casing_stage import make_structure

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.equations import no_inputs
-from siggen.dynamics.time.linear_motion import LinearMotion
-from siggen.dynamics.time.modes import natural_modes
+from siggen.drivetrain.structure import Structure
+from siggen.motion.equations import no_inputs
+from siggen.motion.linear_motion import LinearMotion
+from siggen.motion.modes import natural_modes
 from tests.dynamics.casing_stage import MEAN_STIFFNESS, make_structure
 from tests.dynamics.pair_runs import constant_tables
 

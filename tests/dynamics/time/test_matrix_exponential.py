@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.dynamics.time.matrix_exponential import matrix_exponential
+from siggen.motion.exponential_scheme import matrix_exponential
 
 EPS = np.finfo(float).eps
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.modes import slowest_decay_per_s
-from siggen.gears.stiffness.mesh_tables import MeshTables
+from siggen.drivetrain.structure import Structure
+from siggen.mesh.mesh_tables import MeshTables
+from siggen.motion.modes import slowest_decay_per_s
 from tests.dynamics.conftest import make_stage
 from tests.dynamics.integration_runs import model
 from tests.dynamics.trains import eight_dof

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from siggen.dynamics.drive.drive import Drive
-from siggen.dynamics.friction.friction import constant_friction
-from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, POSITION, SLIDING
-from siggen.dynamics.structure.shaft_lines import rigid_rotation
-from siggen.dynamics.time.equations import no_inputs
-from siggen.dynamics.time.linear_motion import LinearMotion
-from siggen.dynamics.time.response import Response, SampleGrid, Wanted, response_of
-from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
+from siggen.drivetrain.drive import Drive
+from siggen.drivetrain.structure import rigid_rotation
+from siggen.gears.missing_material import MissingMaterial, missing_material
+from siggen.mesh.friction import constant_friction
+from siggen.mesh.pair_columns import FLANK, FRICTION, POSITION, SLIDING
+from siggen.motion.equations import no_inputs
+from siggen.motion.linear_motion import LinearMotion
+from siggen.motion.response import Response, SampleGrid, Wanted, response_of
 from tests.dynamics.casing_stage import make_stage, make_structure, torsional
 from tests.dynamics.pair_runs import (
     MESHES,

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.structure import Structure
-from siggen.gears.damage.pit import FlankPit
-from siggen.gears.damage.tooth_damage import Damage
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.spur_gear import SpurGear
-from siggen.gears.stiffness.compliance import StiffnessOptions
-from siggen.gears.stiffness.mesh_tables import MeshTables, mesh_tables
+from siggen.damage.part import Damage
+from siggen.damage.pits import FlankPit
+from siggen.drivetrain.structure import Structure
+from siggen.gears.gear_pair import GearPair
+from siggen.gears.spur_gear import SpurGear
+from siggen.mesh.mesh_tables import MeshTables, mesh_tables
+from siggen.mesh.tooth_compliance import StiffnessOptions
 from tests.dynamics.linear_runs import simulate_response
 from tests.gears.builders import bare
 

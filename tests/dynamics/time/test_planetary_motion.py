@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from siggen.dynamics.time.equations import no_inputs
-from siggen.dynamics.time.exponential_motion import ExponentialMotion
-from siggen.dynamics.time.pair_motion import MeanState, PairMotion
-from siggen.gears.geometry.planetary import PlanetarySet, planetary_problems
+from siggen.gears.planetary import PlanetarySet, planetary_problems
+from siggen.motion.equations import no_inputs
+from siggen.motion.exponential_motion import ExponentialMotion
+from siggen.motion.pair_motion import MeanState, PairMotion
 from tests.dynamics.planetary_set import meshes, planetary_stage
 from tests.dynamics.trains import planetary_structure
 from tests.gears.builders import even_places

@@ -7,18 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.dynamics.friction.friction import constant_friction
-from siggen.dynamics.mesh.pair_columns import FLANK, FRICTION, POSITION, SLIDING
-from siggen.dynamics.structure.shaft_lines import rigid_rotation
-from siggen.dynamics.time.pair_motion import PairMotion
-from siggen.gears.contact.contact_table import contact_table
-from siggen.gears.contact.table_options import TableOptions
-from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import FlankSpall
-from siggen.gears.geometry.missing_material import MissingMaterial, missing_material
-from siggen.gears.stiffness.body_coupling import body_coupling
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.specimen.contact import whole_face
+from siggen.damage.outlines import rectangle
+from siggen.damage.spalls import FlankSpall
+from siggen.drivetrain.structure import rigid_rotation
+from siggen.gears.missing_material import MissingMaterial, missing_material
+from siggen.mesh.body_coupling import body_coupling
+from siggen.mesh.contact_table import contact_table
+from siggen.mesh.friction import constant_friction
+from siggen.mesh.pair_columns import FLANK, FRICTION, POSITION, SLIDING
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.table_options import TableOptions
+from siggen.motion.pair_motion import PairMotion
+from siggen.record.contact import whole_face
 from tests.dynamics.casing_stage import make_structure
 from tests.dynamics.pair_runs import MESHES, RELIEF, TORQUE, columns, gear_pair, law, motion, settled
 

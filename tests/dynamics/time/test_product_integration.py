@@ -3,11 +3,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.equations import approach_of
-from siggen.dynamics.time.linear_motion import RungeKutta
-from siggen.dynamics.time.product_integration import HERMITE_DIP, SHIFTED_LEGENDRE, ProductIntegration, scheme
-from siggen.gears.stiffness.mesh_tables import MeshTables
+from siggen.drivetrain.structure import Structure
+from siggen.mesh.mesh_tables import MeshTables
+from siggen.motion.equations import approach_of
+from siggen.motion.linear_motion import RungeKutta
+from siggen.motion.product_integration import HERMITE_DIP, SHIFTED_LEGENDRE, ProductIntegration, scheme
 from tests.dynamics.conftest import arched_row, make_tables
 from tests.dynamics.integration_runs import FIRST_PITCHES, MESH_HZ, model, reference, relative_error, trajectory
 
@@ -80,7 +80,7 @@ def test_a_force_from_outside_goes_on_while_the_flanks_are_apart(structure: Stru
 def test_response_weights_are_the_integrals_they_stand_for(structure: Structure, sharp_tables: MeshTables) -> None:
     from scipy.linalg import expm
 
-    from siggen.dynamics.time.equations import state_matrix
+    from siggen.motion.equations import state_matrix
 
     equations, law, _ = model(structure, sharp_tables)
     constants = scheme(equations, law, STEP)

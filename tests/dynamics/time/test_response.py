@@ -5,9 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.response import Response
-from siggen.gears.stiffness.mesh_tables import MeshTables
+from siggen.drivetrain.structure import Structure
+from siggen.mesh.mesh_tables import MeshTables
+from siggen.motion.response import Response
 from tests.dynamics.conftest import BASE_PITCH, BASE_RADIUS_1, PRESSURE_ANGLE, make_tables
 from tests.dynamics.linear_runs import simulate_response
 

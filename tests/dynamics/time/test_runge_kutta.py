@@ -2,9 +2,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.linear_motion import RungeKutta
-from siggen.gears.stiffness.mesh_tables import MeshTables
+from siggen.drivetrain.structure import Structure
+from siggen.mesh.mesh_tables import MeshTables
+from siggen.motion.linear_motion import RungeKutta
 from tests.dynamics.conftest import make_tables
 from tests.dynamics.integration_runs import model, reference, relative_error, trajectory
 

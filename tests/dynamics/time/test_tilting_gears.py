@@ -9,24 +9,24 @@ from functools import cache
 import numpy as np
 import pytest
 
-from siggen.dynamics.friction.friction import constant_friction
-from siggen.dynamics.mesh.mesh_force import mean_mesh_stiffness
-from siggen.dynamics.mesh.pair_columns import FRICTION, MOMENT, NODE_ROWS, NODE_TILT, NORMAL, SLIDING
-from siggen.dynamics.mesh.pair_forces import pair_forces
-from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
-from siggen.dynamics.mesh.pair_places import pair_table
-from siggen.dynamics.structure.gear_stage import Shaft
-from siggen.dynamics.structure.structure import Structure
-from siggen.dynamics.time.pair_motion import MeanState, PairMesh, PairMotion
-from siggen.gears.contact.contact_table import contact_table
-from siggen.gears.contact.table_options import TableOptions, face_slices
-from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import FlankSpall
-from siggen.gears.damage.tooth_damage import Damage
-from siggen.gears.geometry.missing_material import TipRelief, missing_material
-from siggen.gears.stiffness.body_coupling import body_coupling
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.specimen.contact import whole_face
+from siggen.damage.outlines import rectangle
+from siggen.damage.part import Damage
+from siggen.damage.spalls import FlankSpall
+from siggen.drivetrain.gear_stage import Shaft
+from siggen.drivetrain.structure import Structure
+from siggen.gears.missing_material import TipRelief, missing_material
+from siggen.mesh.body_coupling import body_coupling
+from siggen.mesh.contact_table import contact_table
+from siggen.mesh.friction import constant_friction
+from siggen.mesh.mesh_force import mean_mesh_stiffness
+from siggen.mesh.node_forces import pair_forces
+from siggen.mesh.pair_columns import FRICTION, MOMENT, NODE_ROWS, NODE_TILT, NORMAL, SLIDING
+from siggen.mesh.pair_law import MeshConstants, PairLaw, pair_law
+from siggen.mesh.pair_springs import pair_table
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.table_options import TableOptions, face_slices
+from siggen.motion.pair_motion import MeanState, PairMesh, PairMotion
+from siggen.record.contact import whole_face
 from tests.dynamics.casing_stage import make_casing, make_stage, make_structure
 from tests.dynamics.pair_runs import MESHES, RELIEF, TORQUE, columns, gear_pair, law, motion, settled
 from tests.dynamics.trains import casing_structure

@@ -7,14 +7,23 @@ from typing import NamedTuple
 import numpy as np
 
 from siggen.arrays import FloatArray
-from siggen.gears.contact.contact_table import ContactTable
-from siggen.gears.contact.kind_row import KindRow, first_touch, kind_row, pits_of_kind
-from siggen.gears.contact.table_columns import FORCE, SLOPE, TableSolver, row_faces, table_solver
-from siggen.gears.contact.table_options import TableOptions, face_slices
-from siggen.gears.damage.tooth_damage import Damage
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.stiffness.mesh_tables import pair_kinds
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.damage.part import Damage
+from siggen.gears.gear_pair import GearPair
+from siggen.mesh.contact_table import (
+    FORCE,
+    SLOPE,
+    ContactTable,
+    KindRow,
+    TableSolver,
+    first_touch,
+    kind_row,
+    pits_of_kind,
+    row_faces,
+    table_solver,
+)
+from siggen.mesh.mesh_tables import pair_kinds
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.table_options import TableOptions, face_slices
 from tests.gears.contact.faces import force_curve
 
 APPROACHES = (0.12, 0.25, 0.4, 0.6)

@@ -6,16 +6,11 @@ from math import pi
 
 import numpy as np
 
-from siggen.gears.contact.covered_slice import spread_of_cells
-from siggen.gears.contact.edge_law import NO_EDGE
-from siggen.gears.contact.face_force import FaceForce, face_force
-from siggen.gears.contact.face_gaps import FaceGaps
-from siggen.gears.contact.face_slices import FaceSlices
-from siggen.gears.contact.force_curve import ForceCurve, write_curves
-from siggen.gears.contact.line_kernel import kernel_family, line_kernel
-from siggen.gears.contact.newton_matrix import solver_room
-from siggen.gears.contact.pair_faces import carrying_length
-from siggen.gears.contact.tooth_kernel import tooth_kernel, unit_tooth
+from siggen.mesh.contact_edges import NO_EDGE
+from siggen.mesh.contact_table import ForceCurve, write_curves
+from siggen.mesh.face_force import FaceForce, face_force, solver_room
+from siggen.mesh.face_slices import FaceGaps, FaceSlices, carrying_length, spread_of_cells
+from siggen.mesh.line_kernel import kernel_family, line_kernel, tooth_kernel, unit_tooth
 
 KAPPA = 4.0 * (1.0 - 0.3**2) / (pi * 206e9)
 RADIUS, DEPTH, WIDTH = 6.676e-3, 2.2e-3, 20e-3

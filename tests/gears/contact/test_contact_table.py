@@ -8,31 +8,21 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicHermiteSpline
 
-from siggen.gears.contact.contact_table import ContactTable, contact_table
-from siggen.gears.contact.face_gaps import face_gaps
-from siggen.gears.contact.face_slices import FaceSlices
-from siggen.gears.contact.pair_faces import FaceOptions, pair_faces
-from siggen.gears.contact.pair_rest import pair_rest
-from siggen.gears.contact.table_columns import (
-    CARRYING,
-    FORCE,
-    SLOPE,
-    TYPICAL_SHARE,
-    node_places_m,
-)
-from siggen.gears.contact.table_options import TableOptions, face_slices
-from siggen.gears.damage.flank_chords import flank_chords
-from siggen.gears.damage.outlines import Polygon, rectangle
-from siggen.gears.damage.spall import FlankSpall
-from siggen.gears.damage.tooth_damage import Damage
-from siggen.gears.stiffness.compliance import tooth_compliance
-from siggen.gears.stiffness.hertz import weber_banaschek_compliance
-from siggen.gears.stiffness.mesh_stiffness import rolls_at
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.damage.flank_chords import flank_chords
+from siggen.damage.outlines import Polygon, rectangle
+from siggen.damage.part import Damage
+from siggen.damage.spalls import FlankSpall
+from siggen.mesh.contact_table import CARRYING, FORCE, SLOPE, TYPICAL_SHARE, ContactTable, contact_table, node_places_m
+from siggen.mesh.face_slices import FaceOptions, FaceSlices, face_gaps, pair_faces, pair_rest
+from siggen.mesh.hertz import weber_banaschek_compliance
+from siggen.mesh.mesh_stiffness import rolls_at
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.table_options import TableOptions, face_slices
+from siggen.mesh.tooth_compliance import tooth_compliance
+from tests.damage.test_kind_without_outline import Hinge
 from tests.dynamics.pair_runs import gear_pair
 from tests.gears.contact.contact_table_error import contact_table_error
 from tests.gears.contact.faces import force_curve
-from tests.gears.damage.test_kind_without_outline import Hinge
 
 STIFFNESS = StiffnessOptions()
 FORCE_N = 1200.0

@@ -5,13 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.gears.contact.covered_slice import CoveredSlice, covered_sink, spread_of_cells
-from siggen.gears.contact.edge_law import NO_EDGE
-from siggen.gears.contact.face_gaps import face_gaps
-from siggen.gears.contact.two_edges import gap_sink
-from siggen.gears.damage.flank_chords import flank_chords
-from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import FlankSpall
+from siggen.damage.flank_chords import flank_chords
+from siggen.damage.outlines import rectangle
+from siggen.damage.spalls import FlankSpall
+from siggen.mesh.contact_edges import NO_EDGE, gap_sink
+from siggen.mesh.face_slices import CoveredSlice, covered_sink, face_gaps, spread_of_cells
 from tests.gears.builders import pair_18_47
 from tests.gears.contact.faces import (
     BENDING,

@@ -7,8 +7,7 @@ from math import log, pi, sqrt
 import numpy as np
 import pytest
 
-from siggen.gears.contact.edge_law import QUARTER_PLANE, edge_terms, half_plane_factor, notch_factor
-from siggen.gears.contact.edge_pressure import largest_edge_pressure
+from siggen.mesh.contact_edges import QUARTER_PLANE, edge_terms, half_plane_factor, largest_edge_pressure, notch_factor
 from tests.reference.contact.plane_contact import edge_sink, land_cells, solve_cells
 
 KAPPA = 4.0 * (1.0 - 0.3**2) / (pi * 206e9)

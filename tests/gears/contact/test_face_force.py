@@ -8,11 +8,9 @@ from functools import partial
 import numpy as np
 import pytest
 
-from siggen.gears.contact.edge_law import NO_EDGE
-from siggen.gears.contact.face_gaps import FaceGaps
-from siggen.gears.contact.pair_faces import FaceOptions, pair_faces
-from siggen.gears.contact.pair_rest import PairRest
-from siggen.gears.stiffness.hertz import weber_banaschek_compliance
+from siggen.mesh.contact_edges import NO_EDGE
+from siggen.mesh.face_slices import FaceGaps, FaceOptions, PairRest, pair_faces
+from siggen.mesh.hertz import weber_banaschek_compliance
 from tests.gears.builders import pair_18_47
 from tests.gears.contact.faces import BENDING, REST, WIDTH, approach_under, face, force_curve, part_spall, solve, spall
 from tests.reference.contact.face_contact import FaceCase, approach_at, land_of_gap, land_of_pits

@@ -7,13 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.gears.contact.edge_law import NO_EDGE
-from siggen.gears.contact.face_gaps import FaceGaps, _nearest, face_gaps
-from siggen.gears.contact.pair_faces import FaceOptions, carrying_length, pair_faces
-from siggen.gears.contact.pair_rest import PairRest
-from siggen.gears.damage.flank_chords import flank_chords
-from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import FlankSpall
+from siggen.damage.flank_chords import flank_chords
+from siggen.damage.outlines import rectangle
+from siggen.damage.spalls import FlankSpall
+from siggen.mesh.contact_edges import NO_EDGE
+from siggen.mesh.face_slices import FaceGaps, FaceOptions, PairRest, _nearest, carrying_length, face_gaps, pair_faces
 from tests.gears.builders import pair_18_47
 
 PAIR = pair_18_47(module_m=3e-3)

@@ -7,12 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.gears.contact.contact_table import contact_table
-from siggen.gears.contact.kind_row import kind_row
-from siggen.gears.contact.table_options import TableOptions, face_slices
-from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import FlankSpall
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.damage.outlines import rectangle
+from siggen.damage.spalls import FlankSpall
+from siggen.mesh.contact_table import contact_table, kind_row
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.table_options import TableOptions, face_slices
 from tests.gears.geometry.test_helical import helical_pair
 
 OPTIONS, STIFFNESS, POINTS = TableOptions(1000.0), StiffnessOptions(), 801

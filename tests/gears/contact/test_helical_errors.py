@@ -5,17 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.gears.contact.face_force import face_force
-from siggen.gears.contact.kind_row import kind_row
-from siggen.gears.contact.load_shares import load_shares
-from siggen.gears.contact.newton_matrix import solver_room
-from siggen.gears.contact.table_columns import TYPICAL_SHARE, row_faces, table_solver
-from siggen.gears.contact.table_options import TableOptions
-from siggen.gears.errors.flank_waves import ORDERS, FlankWaves, with_waves
-from siggen.gears.errors.tooth_errors import with_errors
-from siggen.gears.geometry.helical import slice_shifts_m
-from siggen.gears.geometry.missing_material import TipRelief, missing_material
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.gears.errors import with_errors
+from siggen.gears.flank_waves import ORDERS, FlankWaves, with_waves
+from siggen.gears.helical import slice_shifts_m
+from siggen.gears.missing_material import TipRelief, missing_material
+from siggen.mesh.contact_table import TYPICAL_SHARE, kind_row, load_shares, row_faces, table_solver
+from siggen.mesh.face_force import face_force, solver_room
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.table_options import TableOptions
 from tests.gears.erroneous_gears import drawn
 from tests.gears.geometry.test_helical import helical_pair
 

@@ -7,17 +7,22 @@ from math import exp, log
 import numpy as np
 import pytest
 
-from siggen.gears.contact.exponential_matrix import RowMatrix, add_row_products, products, solve_rows
-from siggen.gears.contact.line_kernel import (
+from siggen.lanes import LANES
+from siggen.mesh.line_kernel import (
     EXPONENTIALS,
+    RowMatrix,
+    add_row_products,
     diagonal,
     kernel_family,
     line_kernel,
+    products,
     reckoned_width,
+    solve_rows,
     strengths,
+    tooth_kernel,
+    tooth_matrix,
+    unit_tooth,
 )
-from siggen.gears.contact.tooth_kernel import tooth_kernel, tooth_matrix, unit_tooth
-from siggen.lanes import LANES
 
 CELL, DEPTH, CELLS = 0.1e-3, 2.2e-3, 200
 

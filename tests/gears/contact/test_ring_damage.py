@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from siggen.arrays import FloatArray
-from siggen.gears.contact.contact_table import ContactTable, contact_table
-from siggen.gears.contact.table_options import TableOptions
-from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import FlankSpall
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.internal_pair import InternalPair, ring_round
-from siggen.gears.stiffness.damage_summary import damage_summary
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.damage.outlines import rectangle
+from siggen.damage.spalls import FlankSpall
+from siggen.gears.gear_pair import GearPair
+from siggen.gears.planetary import InternalPair, ring_round
+from siggen.mesh.contact_table import ContactTable, contact_table
+from siggen.mesh.damage_summary import damage_summary
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.table_options import TableOptions
 from tests.gears.builders import spur_gear
 
 HALF_M = 0.5e-3

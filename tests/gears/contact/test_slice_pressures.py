@@ -7,9 +7,8 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from siggen.gears.contact.edge_pressure import largest_edge_pressure
-from siggen.gears.contact.loads_under_force import loads_under_force
-from siggen.gears.contact.slice_pressures import slice_pressures
+from siggen.mesh.contact_edges import largest_edge_pressure
+from siggen.mesh.face_force import loads_under_force, slice_pressures
 from tests.gears.contact.faces import KAPPA, RADIUS, WIDTH, face, spall
 
 FORCE = 1200.0

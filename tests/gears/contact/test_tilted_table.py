@@ -5,22 +5,29 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.mesh import pair_law as layout
-from siggen.dynamics.mesh.contact_spring import PairPlace, pair_spring
-from siggen.dynamics.mesh.pair_law import MeshConstants, PairLaw, pair_law
-from siggen.gears.contact.contact_table import ContactTable, contact_table
-from siggen.gears.contact.face_slices import FaceSlices
-from siggen.gears.contact.kind_row import KindRow, first_touch, kind_row, pits_of_kind
-from siggen.gears.contact.table_columns import row_faces, table_solver
-from siggen.gears.contact.table_options import TableOptions, face_slices
-from siggen.gears.contact.tilt_rays import RAYS
-from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import FlankSpall
-from siggen.gears.damage.tooth_damage import Damage
-from siggen.gears.geometry.missing_material import TipRelief, missing_material
-from siggen.gears.stiffness.mesh_tables import pair_kinds
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
-from siggen.specimen.contact import whole_face
+from siggen.damage.outlines import rectangle
+from siggen.damage.part import Damage
+from siggen.damage.spalls import FlankSpall
+from siggen.gears.missing_material import TipRelief, missing_material
+from siggen.mesh import pair_law as layout
+from siggen.mesh.contact_table import (
+    ContactTable,
+    KindRow,
+    contact_table,
+    first_touch,
+    kind_row,
+    pits_of_kind,
+    row_faces,
+    table_solver,
+)
+from siggen.mesh.face_slices import FaceSlices
+from siggen.mesh.mesh_tables import pair_kinds
+from siggen.mesh.pair_law import MeshConstants, PairLaw, pair_law
+from siggen.mesh.springs import PairPlace, pair_spring
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.table_options import TableOptions, face_slices
+from siggen.mesh.tilt_rays import RAYS
+from siggen.record.contact import whole_face
 from tests.dynamics.pair_runs import RELIEF, gear_pair, law
 from tests.gears.contact.faces import force_curve
 from tests.gears.contact.test_contact_table import pitch_height, through_the_face

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.gears.contact.own_width import mean_width, own_law
-from siggen.gears.contact.tooth_kernel import tooth_kernel, tooth_matrix, unit_tooth
+from siggen.mesh.face_force import mean_width, own_law
+from siggen.mesh.line_kernel import tooth_kernel, tooth_matrix, unit_tooth
 from tests.gears.contact.faces import BENDING, KAPPA, REST, WIDTH, face, solve
 
 LENGTH, COMPLIANCE = 4e-3, 3e-9
@@ -40,8 +40,8 @@ def test_the_pair_carries_as_a_full_matrix_of_line_and_teeth_does() -> None:
 
 def _line(slices, loads: np.ndarray) -> np.ndarray:
     """(K + β) u from the exponentials one by one, and what slices get by their own width."""
-    from siggen.gears.contact.face_slices import contact_half_width
-    from siggen.gears.contact.line_kernel import diagonal, strengths
+    from siggen.mesh.face_slices import contact_half_width
+    from siggen.mesh.line_kernel import diagonal, strengths
 
     width, growth, _ = contact_half_width(slices, float(loads @ loads))
     strength, slope = np.zeros(5), np.zeros(5)

@@ -6,8 +6,7 @@ from math import pi, sqrt
 
 import pytest
 
-from siggen.gears.contact.edge_law import NO_EDGE, half_plane_factor
-from siggen.gears.contact.two_edges import gap_sink
+from siggen.mesh.contact_edges import NO_EDGE, gap_sink, half_plane_factor
 from tests.reference.contact import plane_contact
 
 KAPPA = 4.0 * (1.0 - 0.3**2) / (pi * 206e9)

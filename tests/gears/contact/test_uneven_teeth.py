@@ -7,16 +7,13 @@ import pytest
 from scipy.sparse import diags
 from scipy.sparse.linalg import spsolve
 
-from siggen.gears.contact.face_force import face_force
-from siggen.gears.contact.face_slices import FaceSlices
-from siggen.gears.contact.kind_row import kind_row
-from siggen.gears.contact.newton_matrix import solver_room
-from siggen.gears.contact.table_columns import row_faces, table_solver
-from siggen.gears.contact.table_options import TableOptions, face_slices
-from siggen.gears.contact.tooth_kernel import tooth_matrix, unit_tooth
-from siggen.gears.contact.uneven_teeth import UnevenTeeth
+from siggen.mesh.contact_table import kind_row, row_faces, table_solver
+from siggen.mesh.face_force import face_force, solver_room
+from siggen.mesh.face_slices import FaceSlices, UnevenTeeth
+from siggen.mesh.line_kernel import tooth_matrix, unit_tooth
+from siggen.mesh.table_options import TableOptions, face_slices
+from tests.damage.test_crack import OPTIONS, PAIR, crack
 from tests.gears.contact.faces import KAPPA, WIDTH
-from tests.gears.damage.test_crack import OPTIONS, PAIR, crack
 
 SLICES, LENGTH, SOUND = 60, 4e-3, np.array([2e-9, 3e-9])
 Y = (np.arange(SLICES) + 0.5) / SLICES

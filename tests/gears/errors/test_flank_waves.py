@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.dynamics.friction.contact_kinematics import effective_modulus, relative_radius
-from siggen.gears.errors.flank_waves import ORDERS, FlankWaves, half_width_m, missing_m, with_waves
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.missing_material import missing_material
+from siggen.gears.flank_waves import ORDERS, FlankWaves, half_width_m, missing_m, with_waves
+from siggen.gears.gear_pair import GearPair
+from siggen.gears.missing_material import missing_material
+from siggen.mesh.lubrication import effective_modulus, relative_radius
 from tests.dynamics.pair_runs import gear_pair
 from tests.gears.errors.unloaded_transmission_error import unloaded_transmission_error_m
 

@@ -8,9 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.gears.errors.error_shapes import FLANK_POINTS, slopes, without_line
-from siggen.gears.errors.gear_errors import deviations, eccentric_m, gear_errors
-from siggen.gears.geometry.gear_pair import GearPair
+from siggen.gears.errors import FLANK_POINTS, deviations, eccentric_m, gear_errors, slopes, without_line
+from siggen.gears.gear_pair import GearPair
 from tests.gears.builders import pair_18_47, spur_gear
 from tests.gears.erroneous_gears import drawn, limits, only_eccentric, shapes
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.gears.errors.helix import HELIX_POINTS, Helix, drawn_helix, straight_helix
-from siggen.gears.errors.iso_1328 import flank_tolerances
+from siggen.gears.errors import HELIX_POINTS, Helix, drawn_helix, straight_helix
+from siggen.gears.tolerances import flank_tolerances
 from tests.gears.builders import pair_18_47
 
 LIMITS = flank_tolerances(pair_18_47().pinion, 0.02, 6)

@@ -5,7 +5,7 @@ from math import sqrt
 
 import pytest
 
-from siggen.gears.errors.iso_1328 import CLASSES, flank_tolerances, outside_iso_1328
+from siggen.gears.tolerances import CLASSES, flank_tolerances, outside_iso_1328
 from tests.gears.builders import spur_gear
 
 WIDTH_M = 20e-3

@@ -5,10 +5,8 @@ from math import cos
 import numpy as np
 import pytest
 
-from siggen.gears.errors.error_shapes import FLANK_POINTS
-from siggen.gears.errors.gear_errors import GearErrors, deviations
-from siggen.gears.errors.tooth_errors import with_errors
-from siggen.gears.geometry.missing_material import MissingMaterial, TipRelief, missing_material
+from siggen.gears.errors import FLANK_POINTS, GearErrors, deviations, with_errors
+from siggen.gears.missing_material import MissingMaterial, TipRelief, missing_material
 from tests.gears.builders import pair_18_47
 from tests.gears.erroneous_gears import drawn, only_eccentric
 from tests.gears.errors.unloaded_transmission_error import unloaded_transmission_error_m

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from siggen.arrays import FloatArray
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.missing_material import MissingMaterial, MissingTables
+from siggen.gears.gear_pair import GearPair
+from siggen.gears.missing_material import MissingMaterial, MissingTables
 
 
 def unloaded_transmission_error_m(pair: GearPair, missing: MissingMaterial, pitches: FloatArray) -> FloatArray:

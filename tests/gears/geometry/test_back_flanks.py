@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from siggen.gears.geometry.back_flanks import back_flanks, driven_pair, pitches_ahead
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.missing_material import missing_material
-from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.gears.back_flanks import back_flanks, driven_pair, pitches_ahead
+from siggen.gears.gear_pair import GearPair
+from siggen.gears.missing_material import missing_material
+from siggen.gears.spur_gear import SpurGear
 
 
 def pair_of(teeth: tuple[int, int], shifts: tuple[float, float]) -> GearPair:

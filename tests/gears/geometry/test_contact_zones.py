@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.gears.geometry.contact_zones import contact_zones
-from siggen.gears.stiffness.mesh_stiffness import pairs_in_contact
+from siggen.gears.gear_pair import contact_zones
+from siggen.mesh.mesh_stiffness import pairs_in_contact
 from tests.gears.builders import pair_18_47, spur_gear
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from siggen.arrays import FloatArray
-from siggen.gears.geometry.corner_contact import tip_gap_m
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.internal_pair import InternalPair, ring_round
+from siggen.gears.gear_pair import GearPair
+from siggen.gears.missing_material import tip_gap_m
+from siggen.gears.planetary import InternalPair, ring_round
 from siggen.names import Side
 from tests.dynamics.pair_runs import gear_pair
 from tests.gears.builders import spur_gear

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear, geometry_problems
-from siggen.gears.geometry.involute import involute_function
+from siggen.gears.gear_pair import GearPair, SpurGear, geometry_problems
+from siggen.gears.involute import involute_function
 from tests.gears.builders import pair_18_47, spur_gear
 
 

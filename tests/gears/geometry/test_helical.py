@@ -8,12 +8,12 @@ from math import cos, pi, radians, sin
 import numpy as np
 import pytest
 
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.helical import contact_length_m, normal_gear
-from siggen.gears.geometry.spur_gear import transverse_gear
-from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_stiffness
-from siggen.gears.stiffness.mesh_tables import mesh_tables
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.gears.gear_pair import GearPair
+from siggen.gears.helical import contact_length_m, normal_gear
+from siggen.gears.spur_gear import transverse_gear
+from siggen.mesh.mesh_stiffness import mesh_stiffness, pair_stiffness
+from siggen.mesh.mesh_tables import mesh_tables
+from siggen.mesh.stiffness_options import StiffnessOptions
 from tests.gears.builders import spur_gear
 
 

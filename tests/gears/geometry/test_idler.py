@@ -6,8 +6,7 @@ from math import acos, hypot, pi, radians, tan
 
 import pytest
 
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.geometry.idler import idler_ahead_pitches
+from siggen.gears.gear_pair import GearPair, SpurGear, idler_ahead_pitches
 
 
 def gear(teeth: int, shift: float = 0.0) -> SpurGear:

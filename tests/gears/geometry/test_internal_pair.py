@@ -8,8 +8,8 @@ from math import cos, pi, radians, sin, tan
 import numpy as np
 import pytest
 
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.internal_pair import RingGear, internal_problems, ring_ahead_pitches, ring_round
+from siggen.gears.gear_pair import GearPair
+from siggen.gears.planetary import RingGear, internal_problems, ring_ahead_pitches, ring_round
 from tests.gears.builders import spur_gear
 
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.gears.geometry.missing_material import CORNER_REACH_PITCHES, TipRelief, missing_material
+from siggen.gears.missing_material import CORNER_REACH_PITCHES, TipRelief, missing_material
 from tests.dynamics.pair_runs import RELIEF, gear_pair
 
 

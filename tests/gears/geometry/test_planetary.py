@@ -4,7 +4,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from siggen.gears.geometry.planetary import PlanetarySet, planetary_problems, typed_places
+from siggen.gears.planetary import PlanetarySet, planetary_problems, typed_places
 from tests.gears.builders import even_places
 
 EVEN = PlanetarySet(24, 27, 78, even_places(3))

@@ -14,7 +14,7 @@ from math import asin, cos, pi, sin, sqrt, tan
 import numpy as np
 from scipy.integrate import quad
 
-from siggen.gears.damage.pit import FlankPit
+from siggen.damage.pits import FlankPit
 
 
 class Outline:

@@ -7,11 +7,11 @@ from math import log, pi
 import numpy as np
 import pytest
 
-from siggen.gears.stiffness import axial_body
-from siggen.gears.stiffness.axial_body import axial_compliance, wave_answer, wave_sum
-from siggen.gears.stiffness.body_coupling import body_coupling, neighbour_compliance
-from siggen.gears.stiffness.compliance import tooth_compliance
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.mesh import axial_body
+from siggen.mesh.axial_body import axial_compliance, wave_answer, wave_sum
+from siggen.mesh.body_coupling import body_coupling, neighbour_compliance
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.tooth_compliance import tooth_compliance
 from tests.gears.geometry.test_helical import helical_pair
 
 

@@ -10,19 +10,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.stiffness.body_coupling import body_coupling, neighbour_compliance, ring_torsion
-from siggen.gears.stiffness.compliance import tooth_compliance
-from siggen.gears.stiffness.coupled_rows import coupled_contributions, neighbour_runs
-from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_stiffness, pairs_in_contact
-from siggen.gears.stiffness.mesh_tables import (
-    kind_stiffness,
-    largest_stiffness_loss,
-    mesh_tables,
-    pair_kinds,
+from siggen.gears.gear_pair import GearPair, SpurGear
+from siggen.mesh.body_coupling import (
+    body_coupling,
+    coupled_contributions,
+    neighbour_compliance,
+    neighbour_runs,
+    ring_torsion,
 )
-from siggen.gears.stiffness.stiffness_notes import stiffness_notes
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.mesh.mesh_stiffness import mesh_stiffness, pair_stiffness, pairs_in_contact
+from siggen.mesh.mesh_tables import kind_stiffness, largest_stiffness_loss, mesh_tables, pair_kinds
+from siggen.mesh.stiffness_notes import stiffness_notes
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.tooth_compliance import tooth_compliance
 from tests.gears.builders import bare, layers, pair_18_47, pit
 
 PAIR = pair_18_47()

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from siggen.gears.stiffness.calibration import calibration_factor
-from siggen.gears.stiffness.compliance import tooth_compliance
-from siggen.gears.stiffness.stiffness_notes import stiffness_notes
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.mesh.calibration import calibration_factor
+from siggen.mesh.stiffness_notes import stiffness_notes
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.tooth_compliance import tooth_compliance
 from tests.gears.builders import bare, pair_18_47
 
 PARTS = ("bending", "shear", "axial", "foundation")

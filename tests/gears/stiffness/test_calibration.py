@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.stiffness import calibration_table, coupling_table
-from siggen.gears.stiffness.calibration import calibration_factor, outside_calibration
-from siggen.gears.stiffness.calibration_table import MAIN_COEFFICIENTS, METADATA
-from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions, tooth_compliance
+from siggen.gears.gear_pair import GearPair, SpurGear
+from siggen.mesh import calibration_table, coupling_table
+from siggen.mesh.calibration import calibration_factor, outside_calibration
+from siggen.mesh.calibration_table import MAIN_COEFFICIENTS, METADATA
+from siggen.mesh.mesh_stiffness import StiffnessOptions, tooth_compliance
 
 PLACES = (0.1, 0.3, 0.5, 0.7, 0.9)
 # Finite-element compliance times E L by (z, h_f, X, pressure angle), plane stress, edge length 0.02 modules:

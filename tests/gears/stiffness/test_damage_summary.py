@@ -8,11 +8,11 @@ from math import pi
 import numpy as np
 import pytest
 
-from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import FlankSpall
-from siggen.gears.stiffness.damage_summary import DamageSummary, damage_summary, flank_arc_m
-from siggen.gears.stiffness.mesh_stiffness import pair_stiffness
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.damage.outlines import rectangle
+from siggen.damage.spalls import FlankSpall
+from siggen.mesh.damage_summary import DamageSummary, damage_summary, flank_arc_m
+from siggen.mesh.mesh_stiffness import pair_stiffness
+from siggen.mesh.stiffness_options import StiffnessOptions
 from tests.gears.builders import layers, pair_18_47, pit
 
 PAIR = pair_18_47()

@@ -11,7 +11,7 @@ SKIP = "the finite-element check needs the extra 'fem': pip install -e '.[fem]'"
 pytest.importorskip("skfem", reason=SKIP)
 pytest.importorskip("gmsh", reason=SKIP, exc_type=ImportError)
 
-from siggen.gears.stiffness.body_coupling import ring_torsion  # noqa: E402
+from siggen.mesh.body_coupling import ring_torsion  # noqa: E402
 from tests.reference.contact.face_contact import FaceCase, approach_at, land_of_gap  # noqa: E402
 from tests.reference.finite_elements.calibration import ToothShape  # noqa: E402
 from tests.reference.finite_elements.extruded_body import ExtrudedBody, face_line  # noqa: E402

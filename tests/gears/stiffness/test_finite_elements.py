@@ -11,8 +11,8 @@ SKIP = "the finite-element check needs the extra 'fem': pip install -e '.[fem]'"
 pytest.importorskip("skfem", reason=SKIP)
 pytest.importorskip("gmsh", reason=SKIP, exc_type=ImportError)
 
-from siggen.gears.stiffness.body_coupling import ring_torsion  # noqa: E402
-from siggen.gears.stiffness.calibration import calibration_factor  # noqa: E402
+from siggen.mesh.body_coupling import ring_torsion  # noqa: E402
+from siggen.mesh.calibration import calibration_factor  # noqa: E402
 from tests.reference.finite_elements.calibration import ToothShape, compliance_ratio  # noqa: E402
 from tests.reference.finite_elements.comparison import active_rolls, model_ratios, paper_a_pair  # noqa: E402
 from tests.reference.finite_elements.coupling import (  # noqa: E402

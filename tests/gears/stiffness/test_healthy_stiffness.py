@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from siggen.gears.geometry.gear_pair import GearPair, geometry_problems
-from siggen.gears.stiffness.beams import involute_integrals
-from siggen.gears.stiffness.compliance import tooth_compliance
-from siggen.gears.stiffness.mesh_stiffness import contact_compliance, mesh_stiffness, pair_stiffness
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.gears.gear_pair import GearPair, geometry_problems
+from siggen.mesh.beams import involute_integrals
+from siggen.mesh.mesh_stiffness import contact_compliance, mesh_stiffness, pair_stiffness
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.tooth_compliance import tooth_compliance
 from tests.gears.builders import bare, pair_18_47, spur_gear
 from tests.gears.stiffness.slow_quadrature import Outline, alpha_form, beam_compliances, straight_root_closed_form
 

@@ -11,8 +11,8 @@ SKIP = "the finite-element check needs the extra 'fem': pip install -e '.[fem]'"
 pytest.importorskip("skfem", reason=SKIP)
 pytest.importorskip("gmsh", reason=SKIP, exc_type=ImportError)
 
-from siggen.gears.stiffness.compliance import tooth_compliance  # noqa: E402
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions  # noqa: E402
+from siggen.mesh.stiffness_options import StiffnessOptions  # noqa: E402
+from siggen.mesh.tooth_compliance import tooth_compliance  # noqa: E402
 from tests.reference.finite_elements.calibration import ToothShape  # noqa: E402
 from tests.reference.finite_elements.extruded_body import face_line  # noqa: E402
 from tests.reference.finite_elements.helical_body import HelicalBody  # noqa: E402

@@ -8,13 +8,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from siggen.gears.stiffness.hertz import (
-    centre_line_depth,
-    contact_half_width,
-    weber_banaschek_compliance,
-)
-from siggen.gears.stiffness.mesh_stiffness import contact_compliance, pair_compliance, pair_stiffness, rolls_at
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.mesh.hertz import centre_line_depth, contact_half_width, weber_banaschek_compliance
+from siggen.mesh.mesh_stiffness import contact_compliance, pair_compliance, pair_stiffness, rolls_at
+from siggen.mesh.stiffness_options import StiffnessOptions
 from tests.gears.builders import layers, pair_18_47
 
 FORCE_N = 2000.0

@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.spall import FlankSpall
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.internal_pair import RingGear, ring_round
-from siggen.gears.stiffness.compliance import tooth_compliance
-from siggen.gears.stiffness.ring_tooth import ROTATION
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.damage.outlines import rectangle
+from siggen.damage.spalls import FlankSpall
+from siggen.gears.gear_pair import GearPair
+from siggen.gears.planetary import RingGear, ring_round
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.tooth_compliance import ROTATION, tooth_compliance
 from tests.gears.builders import spur_gear
 
 PARTS = ("bending", "shear", "axial")

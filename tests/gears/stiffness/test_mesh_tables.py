@@ -8,9 +8,9 @@ from math import pi
 import numpy as np
 import pytest
 
-from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_stiffness
-from siggen.gears.stiffness.mesh_tables import largest_stiffness_loss, mesh_tables
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.mesh.mesh_stiffness import mesh_stiffness, pair_stiffness
+from siggen.mesh.mesh_tables import largest_stiffness_loss, mesh_tables
+from siggen.mesh.stiffness_options import StiffnessOptions
 from tests.gears.builders import layers, pair_18_47, pit
 
 PAIR = pair_18_47()

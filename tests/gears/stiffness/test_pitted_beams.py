@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.gears.damage.flank_damage import pit_rows
-from siggen.gears.stiffness.compliance import section_breaks
-from siggen.gears.stiffness.pitted_beams import pit_integrals, pit_sums
+from siggen.damage.flank_damage import pit_rows
+from siggen.mesh.pitted_beams import pit_integrals, pit_sums
+from siggen.mesh.tooth_compliance import section_breaks
 from tests.gears.builders import pair_18_47, pit
 
 PAIR = pair_18_47()

@@ -8,12 +8,12 @@ from math import degrees
 import numpy as np
 import pytest
 
-from siggen.gears.damage.flank_damage import damage_problems, pit_rows
-from siggen.gears.damage.kinks import section_kinks
-from siggen.gears.stiffness.compliance import tooth_compliance
-from siggen.gears.stiffness.mesh_stiffness import contact_compliance, mesh_stiffness, pair_stiffness
-from siggen.gears.stiffness.sections import contact_length_loss
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.damage.flank_damage import damage_problems, pit_rows
+from siggen.damage.kinks import section_kinks
+from siggen.mesh.mesh_stiffness import contact_compliance, mesh_stiffness, pair_stiffness
+from siggen.mesh.sections import contact_length_loss
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.tooth_compliance import tooth_compliance
 from tests.gears.builders import bare, layers, pair_18_47, pit
 from tests.gears.stiffness.slow_quadrature import beam_compliances
 

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.geometry.spur_gear import transverse_gear
-from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness, pair_stiffness
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.gears.gear_pair import GearPair, SpurGear
+from siggen.gears.spur_gear import transverse_gear
+from siggen.mesh.mesh_stiffness import mesh_stiffness, pair_stiffness
+from siggen.mesh.stiffness_options import StiffnessOptions
 from tests.gears.builders import bare
 
 

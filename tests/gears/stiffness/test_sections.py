@@ -11,15 +11,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from siggen.gears.damage.flank_damage import pit_rows
-from siggen.gears.damage.heights import flank_heights
-from siggen.gears.damage.kinks import roots_between, section_kinks
-from siggen.gears.stiffness.sections import (
-    contact_length_loss,
-    largest_contact_length_loss,
-    section_loss,
-    union_area_m2,
-)
+from siggen.damage.flank_damage import pit_rows
+from siggen.damage.heights import flank_heights
+from siggen.damage.kinks import roots_between, section_kinks
+from siggen.mesh.sections import contact_length_loss, largest_contact_length_loss, section_loss, union_area_m2
 from tests.gears.builders import layers, pit, spur_gear
 from tests.gears.stiffness.slow_quadrature import Outline, depth_integrals
 

@@ -9,16 +9,16 @@ from math import pi, tan
 import numpy as np
 import pytest
 
-from siggen.gears.damage.outlines import rectangle
-from siggen.gears.damage.pit import FlankPit
-from siggen.gears.damage.spall import FlankSpall
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.stiffness.compliance import tooth_compliance
-from siggen.gears.stiffness.damage_summary import damage_summary
-from siggen.gears.stiffness.hertz import linear_compliance
-from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
-from siggen.gears.stiffness.mesh_tables import largest_stiffness_loss
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.damage.outlines import rectangle
+from siggen.damage.pits import FlankPit
+from siggen.damage.spalls import FlankSpall
+from siggen.gears.gear_pair import GearPair
+from siggen.mesh.damage_summary import damage_summary
+from siggen.mesh.hertz import linear_compliance
+from siggen.mesh.mesh_stiffness import mesh_stiffness
+from siggen.mesh.mesh_tables import largest_stiffness_loss
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.tooth_compliance import tooth_compliance
 from tests.gears.geometry.test_helical import helical_pair
 
 PLAIN, BODY = StiffnessOptions(), StiffnessOptions(coupling="body")

@@ -7,16 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from siggen.gears.contact.covered_slice import spread_of_cells
-from siggen.gears.contact.edge_law import NO_EDGE
-from siggen.gears.contact.face_force import face_force
-from siggen.gears.contact.face_gaps import FaceGaps
-from siggen.gears.contact.face_slices import FaceSlices
-from siggen.gears.contact.line_kernel import kernel_family, line_kernel
-from siggen.gears.contact.newton_matrix import solver_room
-from siggen.gears.contact.pair_faces import carrying_length
-from siggen.gears.contact.table_options import CELL_WIDTHS
-from siggen.gears.contact.tooth_kernel import tooth_kernel, unit_tooth
+from siggen.mesh.contact_edges import NO_EDGE
+from siggen.mesh.face_force import face_force, solver_room
+from siggen.mesh.face_slices import FaceGaps, FaceSlices, carrying_length, spread_of_cells
+from siggen.mesh.line_kernel import kernel_family, line_kernel, tooth_kernel, unit_tooth
+from siggen.mesh.table_options import CELL_WIDTHS
 
 RADIUS_M, DEPTH_M, FACE_M, POISSON = 6.676e-3, 2.2e-3, 20e-3, 0.3
 KAPPA = 4.0 * (1.0 - POISSON**2) / (pi * 206e9)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from siggen.gears.contact import two_edges
+from siggen.mesh import contact_edges as two_edges
 from tests.reference.contact.case import (
     KAPPA,
     RADIUS_M,

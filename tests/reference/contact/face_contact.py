@@ -1,6 +1,6 @@
 """Contact of a parabolic cylinder with an interrupted face in three dimensions: pressure cells on a half space.
 
-Independent of `siggen.gears.contact`: no line kernel, no Hertz width, no slices. Rectangular cells of constant pressure
+Independent of `siggen.mesh`: no line kernel, no Hertz width, no slices. Rectangular cells of constant pressure
 (Love 1929), products by fast Fourier transforms, and the conjugate gradients of Polonsky and Keer (1999) for pressures
 that never pull at a given force. Displacements count from the point at the depth h below the line, in both bodies, as
 those of Weber and Banaschek do. The surface may carry where `land` says so; nothing else makes the edges. Teeth that

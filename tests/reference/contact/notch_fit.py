@@ -1,11 +1,11 @@
-"""Fit of the notch term N to finite elements: the constants of `siggen.gears.contact.edge_law`."""
+"""Fit of the notch term N to finite elements: the constants of `siggen.mesh.contact_edges`."""
 
 from __future__ import annotations
 
 import numpy as np
 from scipy.optimize import least_squares
 
-from siggen.gears.contact.edge_law import NOTCH_POWER, QUARTER_PLANE
+from siggen.mesh.contact_edges import NOTCH_POWER, QUARTER_PLANE
 from tests.reference.contact.case import KAPPA, LINE_LOADS, RADIUS_M, half_width
 from tests.reference.contact.notched_half_plane import notched_edge_sink
 from tests.reference.contact.plane_contact import edge_sink

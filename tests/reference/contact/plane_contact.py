@@ -1,6 +1,6 @@
 """Plane contact of a rigid parabola with an interrupted elastic surface, by pressure cells and a convex programme.
 
-Independent of `siggen.gears.contact`: piecewise constant pressures, displacements averaged over the cells (so that the
+Independent of `siggen.mesh`: piecewise constant pressures, displacements averaged over the cells (so that the
 influence matrix is symmetric), and the least complementary energy under "pressures never pull", found by an active set.
 Nothing is assumed about where the contact ends or how the pressure grows towards an edge.
 

@@ -14,13 +14,8 @@ from math import exp, log, radians, sin
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from siggen.gears.geometry.gear_pair import SpurGear
-from siggen.gears.stiffness.calibration import (
-    RADIUS_RATIO_RANGE,
-    TEETH_RANGE,
-    angle_step,
-    unit_coordinates,
-)
+from siggen.gears.gear_pair import SpurGear
+from siggen.mesh.calibration import RADIUS_RATIO_RANGE, TEETH_RANGE, angle_step, unit_coordinates
 from tests.reference.finite_elements.model_compliance import CALIBRATED_MODEL, MODELS, model_compliance
 from tests.reference.finite_elements.tooth_compliance_fem import PlaneElasticity, tooth_compliance
 

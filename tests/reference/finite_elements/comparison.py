@@ -7,8 +7,8 @@ from math import radians
 
 import numpy as np
 
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.stiffness.calibration import calibration_factor
+from siggen.gears.gear_pair import GearPair, SpurGear
+from siggen.mesh.calibration import calibration_factor
 from tests.reference.finite_elements.calibration import ToothShape, compliance_ratio
 from tests.reference.finite_elements.model_compliance import CALIBRATED_MODEL, MODELS, model_compliance
 from tests.reference.finite_elements.tooth_compliance_fem import tooth_compliance

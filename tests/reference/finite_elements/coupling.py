@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.stiffness.body_coupling import ring_torsion
-from siggen.gears.stiffness.mesh_stiffness import mesh_stiffness
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.gears.gear_pair import GearPair, SpurGear
+from siggen.mesh.body_coupling import ring_torsion
+from siggen.mesh.mesh_stiffness import mesh_stiffness
+from siggen.mesh.stiffness_options import StiffnessOptions
 from tests.reference.finite_elements.calibration import ToothShape
 from tests.reference.finite_elements.comparison import SIZE, paper_a_pair
 from tests.reference.finite_elements.neighbour_compliance import coupled_compliance

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from siggen.gears.geometry.gear_pair import SpurGear
-from siggen.gears.stiffness.body_coupling import TERMS, load_terms, ring_torsion
-from siggen.gears.stiffness.calibration import RADIUS_RATIO_RANGE, TEETH_RANGE, unit_coordinates
+from siggen.gears.gear_pair import SpurGear
+from siggen.mesh.body_coupling import TERMS, load_terms, ring_torsion
+from siggen.mesh.calibration import RADIUS_RATIO_RANGE, TEETH_RANGE, unit_coordinates
 from tests.reference.finite_elements.calibration import ToothShape, chebyshev_nodes
 from tests.reference.finite_elements.neighbour_compliance import coupled_compliance
 

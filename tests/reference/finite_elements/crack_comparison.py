@@ -8,7 +8,7 @@ from math import radians
 
 import numpy as np
 
-from siggen.gears.damage.crack_law import unit_compliance
+from siggen.damage.crack_law import unit_compliance
 from tests.reference.finite_elements.calibration import ToothShape
 from tests.reference.finite_elements.crack_fit import FIT_SIZE, TEETH, flank_rolls
 from tests.reference.finite_elements.cracked_tooth import crack_compliance

@@ -1,4 +1,4 @@
-"""Fit of the compliance that a crack adds (`siggen.gears.damage.crack_law`) to finite elements.
+"""Fit of the compliance that a crack adds (`siggen.damage.crack_law`) to finite elements.
 
 About five minutes. Least squares of errors over what the crack adds and 0.4 % of the sound tooth, so that neither
 cracks that add next to nothing nor deep ones decide; then twice more with weights that grow with the errors left.
@@ -13,10 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from siggen.gears.damage import crack_law
-from siggen.gears.damage.crack_law import mouth_distance, root_shape
-from siggen.gears.geometry.root_chord import root_chord
-from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.damage import crack_law
+from siggen.damage.crack_law import mouth_distance, root_shape
+from siggen.gears.spur_gear import SpurGear, root_chord
 from tests.reference.finite_elements.calibration import ToothShape
 from tests.reference.finite_elements.cracked_tooth import crack_compliance
 

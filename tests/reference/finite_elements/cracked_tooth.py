@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from siggen.gears.geometry.root_chord import root_chord
+from siggen.gears.spur_gear import root_chord
 from tests.reference.finite_elements.tooth_compliance_fem import (
     PlaneElasticity,
     displacements,
@@ -22,7 +22,7 @@ from tests.reference.finite_elements.tooth_compliance_fem import (
 from tests.reference.finite_elements.tooth_mesh import ToothMesh, bore_polygon, flank, meshed, outline
 
 if TYPE_CHECKING:
-    from siggen.gears.geometry.gear_pair import SpurGear
+    from siggen.gears.gear_pair import SpurGear
 
 TIP_SHARE = 0.1
 """Shortest edge, at the tip, over that of the tooth; at most a thirtieth of the crack."""

@@ -2,7 +2,7 @@
 
 Load along the contact line on the flank, displacement along the line of action where that line crosses the tooth's
 centre line, at every y. That is the reading of the plane elements (`tooth_compliance_fem`), and the datum of the
-contact across the face (`siggen.gears.contact.line_kernel`, `reference.contact.face_contact`): what lies between the
+contact across the face (`siggen.mesh.line_kernel`, `reference.contact.face_contact`): what lies between the
 surface and this depth belongs to the contact, in three dimensions as in the plane.
 """
 
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from siggen.gears.geometry.gear_pair import SpurGear
+from siggen.gears.gear_pair import SpurGear
 from tests.reference.finite_elements.extruded_body import ExtrudedBody, face_line
 from tests.reference.finite_elements.tooth_compliance_fem import (
     interior_functionals,

@@ -10,7 +10,7 @@ from math import radians, tan
 
 import numpy as np
 
-from siggen.gears.stiffness.body_coupling import ring_torsion
+from siggen.mesh.body_coupling import ring_torsion
 from tests.reference.contact.face_contact import FaceCase, land_of_gap
 from tests.reference.finite_elements.face_compliance import FaceCompliance, face_compliance
 from tests.reference.finite_elements.face_kernel import kernel_modes, rule_length

@@ -3,7 +3,7 @@
 Load normal to the flank along the contact line, which slopes over it; deflection along the normal, read at every place
 of the face where the line of action crosses the tooth's centre line, as of spur teeth (`face_compliance`), and on an
 unloaded neighbour at its contact. Forces and deflections are those of the transverse plane, as in
-`siggen.gears.geometry.helical`.
+`siggen.gears.helical`.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from siggen.gears.geometry.gear_pair import GearPair
-from siggen.gears.geometry.spur_gear import SpurGear, transverse_gear
-from siggen.gears.stiffness.compliance import tooth_compliance
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.gears.gear_pair import GearPair
+from siggen.gears.spur_gear import SpurGear, transverse_gear
+from siggen.mesh.stiffness_options import StiffnessOptions
+from siggen.mesh.tooth_compliance import tooth_compliance
 from tests.reference.finite_elements.extruded_body import face_line
 from tests.reference.finite_elements.face_compliance import face_compliance
 from tests.reference.finite_elements.helical_body import HelicalBody

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.stiffness.mesh_stiffness import StiffnessOptions, tooth_compliance
+from siggen.gears.gear_pair import GearPair, SpurGear
+from siggen.mesh.mesh_stiffness import StiffnessOptions, tooth_compliance
 
 MODELS = {
     "base circle + profile": StiffnessOptions(beam="base_circle", foundation_angle="profile"),

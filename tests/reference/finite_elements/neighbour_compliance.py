@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from siggen.gears.geometry.gear_pair import SpurGear
+from siggen.gears.gear_pair import SpurGear
 from tests.reference.finite_elements.tooth_compliance_fem import (
     PlaneElasticity,
     displacements,

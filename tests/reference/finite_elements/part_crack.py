@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from siggen.gears.geometry.spur_gear import SpurGear
+from siggen.gears.spur_gear import SpurGear
 from tests.reference.finite_elements.cracked_tooth import crack_tip, cracked_mesh
 from tests.reference.finite_elements.extruded_body import Both, ExtrudedBody, FaceLine, face_line
 from tests.reference.finite_elements.face_compliance import MODES, FaceCompliance

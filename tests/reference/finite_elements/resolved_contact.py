@@ -12,7 +12,7 @@ from math import sqrt
 
 import numpy as np
 
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.gears.gear_pair import GearPair, SpurGear
 from tests.reference.contact.plane_contact import least_energy
 from tests.reference.finite_elements.tooth_compliance_fem import (
     PlaneElasticity,

@@ -11,9 +11,9 @@ from math import radians
 
 import numpy as np
 
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
-from siggen.gears.stiffness.mesh_stiffness import pair_stiffness
-from siggen.gears.stiffness.stiffness_options import StiffnessOptions
+from siggen.gears.gear_pair import GearPair, SpurGear
+from siggen.mesh.mesh_stiffness import pair_stiffness
+from siggen.mesh.stiffness_options import StiffnessOptions
 
 TEETH, MODULE_M, FACE_M, YOUNG_PA = (17, 43), 1e-3, 10e-3, 206e9
 RADIUS_RATIO = 1.4

@@ -1,7 +1,7 @@
 """One tooth pair in three dimensions at a force: extruded finite-element teeth, pressure cells for their contact.
 
 The teeth are those of `face_compliance`, the contact is that of a cylinder on half spaces (`reference.contact`); both
-know the same datum, the tooth's centre line, so their deflections add. Nothing of `siggen.gears.contact` is used.
+know the same datum, the tooth's centre line, so their deflections add. Nothing of `siggen.mesh` is used.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from math import radians, sqrt
 
 import numpy as np
 
-from siggen.gears.geometry.gear_pair import GearPair, SpurGear
+from siggen.gears.gear_pair import GearPair, SpurGear
 from tests.reference.contact.face_contact import FaceCase, _gradients, _Operator
 
 REACH = 8.0

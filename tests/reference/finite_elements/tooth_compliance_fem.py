@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 from tests.reference.finite_elements.tooth_mesh import DEFAULT_SIZE, ToothMesh, tooth_mesh, turned
 
 if TYPE_CHECKING:
-    from siggen.gears.geometry.gear_pair import SpurGear
+    from siggen.gears.gear_pair import SpurGear
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from siggen.gears.geometry.gear_pair import SpurGear
+    from siggen.gears.gear_pair import SpurGear
 
 # Edge lengths away from the tooth follow the edge length on it, so that halving `size` refines the whole mesh.
 COARSEST_EDGE_PER_RADIUS = 2.5

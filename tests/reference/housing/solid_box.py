@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
-from siggen.dynamics.housing.box import Bolt, Box
+from siggen.drivetrain.box import Bolt, Box
 from tests.reference.housing.solid_element import element_matrices
 from tests.reference.housing.solid_mesh import SolidMesh, solid_mesh
 

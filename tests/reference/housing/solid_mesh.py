@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from siggen.dynamics.housing.box import Axis, Box, Rib, Seat
+from siggen.drivetrain.box import Axis, Box, Rib, Seat
 
 ROOM = 1.25
 """Half the square that a seat's rings fill, over the boss's radius."""

@@ -1,0 +1,1 @@
+"""Damage: what a user writes of it, and what it takes from teeth and bearings."""

@@ -1,1 +1,0 @@
-"""Structure, drive, friction, mesh law and time integration of a gearbox."""

@@ -1,1 +1,0 @@
-"""Rolling bearings: how their balls turn and share the load, and what a spall takes from a ball."""

@@ -1,1 +1,0 @@
-"""Oil film, asperities and friction between the flanks."""

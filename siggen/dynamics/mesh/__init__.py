@@ -1,1 +1,0 @@
-"""Force of the tooth pairs over position and approach."""

@@ -1,1 +1,0 @@
-"""Masses, dampers and springs of gears, shafts, bearings and casing."""

@@ -1,1 +1,0 @@
-"""Equations of motion, their integration and the response at the samples."""

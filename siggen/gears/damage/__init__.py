@@ -1,1 +1,0 @@
-"""Damage on flanks: outlines, their union, what the contact line meets."""

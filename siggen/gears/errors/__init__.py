@@ -1,1 +1,0 @@
-"""Manufacturing errors of gears and teeth, by tolerance class."""

@@ -1,1 +1,0 @@
-"""Involute, tooth root, gear pair, path of contact and what tip relief takes away."""

@@ -1,1 +1,0 @@
-"""Compliance of teeth, gear bodies and contacts, and the mesh stiffness that follows."""

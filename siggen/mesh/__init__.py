@@ -1,0 +1,1 @@
+"""How a pair of teeth gives way, touches and rubs, and the force that follows."""

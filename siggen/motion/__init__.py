@@ -1,0 +1,1 @@
+"""Equations of motion, their integration, and the response at the samples."""

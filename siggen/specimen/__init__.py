@@ -1,1 +1,0 @@
-"""One drawn gearbox in SI: the only place where configuration and physics meet."""
