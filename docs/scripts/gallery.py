@@ -10,9 +10,8 @@ from siggen.damage.part import pits_of
 from siggen.gearbox.design import SetDesign
 from siggen.mesh.sections import contact_length_loss
 from siggen.record.teeth import all_teeth
-from siggen.views.flank_figure import save_flank_figure
-from siggen.views.flank_views import flank_damage_table, flank_views
-from siggen.views.stiffness_curves import StiffnessCurve, stiffness_curves
+from siggen.views.flank import flank_damage_table, flank_views, save_flank_figure
+from siggen.views.stiffness import StiffnessCurve, stiffness_curves
 
 FIGURES = Path(__file__).resolve().parents[1] / "figures"
 PAPER = "configs/paper_a.yaml"

@@ -14,7 +14,7 @@ import numpy as np
 import siggen
 from diagnostics.indicators.record import record_values
 from diagnostics.training.referenced import log_values
-from siggen.views.path_curves import path_curves
+from siggen.views.path import path_curves
 
 FS_HZ, TEETH = 25_600.0, (18, 47)
 CHANNELS = ("sensor_1_vertical", "sensor_2_horizontal")

@@ -13,7 +13,7 @@ from siggen.gearbox.plan import planned_record
 from siggen.record.quantities import internal_quantities
 from siggen.record.simulation import record_response
 from siggen.record.specimen_state import specimen_state
-from siggen.views.natural_modes import kinetic_shares, specimen_modes
+from siggen.views.modes import kinetic_shares, specimen_modes
 
 FIGURES = Path(__file__).resolve().parents[1] / "figures"
 CONFIG = Path(__file__).resolve().parents[2] / "configs" / "paper_b.yaml"

@@ -40,7 +40,7 @@ def errors(
     """
     from siggen.checks.loading import load_config
     from siggen.dataset.table_file import write_table_file
-    from siggen.views.tooth_deviations import deviation_table, gear_charts
+    from siggen.views.errors import deviation_table, gear_charts
 
     png = picture.place("errors")
     check_wanted(out, png, "errors")
@@ -52,7 +52,7 @@ def errors(
         echo(str(out))
     if png is not None:
         with working("drawing the picture", compiles=False):
-            from siggen.views.error_figure import save_error_figure
+            from siggen.views.errors import save_error_figure
 
             save_error_figure(charts, png)
         picture.drawn(png)

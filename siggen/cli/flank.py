@@ -40,7 +40,7 @@ def flank(
     from siggen.checks.loading import load_config
     from siggen.dataset.table_file import write_table_file
     from siggen.errors import UsageError
-    from siggen.views.flank_views import flank_damage_table, flank_views
+    from siggen.views.flank import flank_damage_table, flank_views
 
     png = picture.place("flank")
     check_wanted(out, png, "flank")
@@ -56,7 +56,7 @@ def flank(
         echo(str(out))
     if png is not None:
         with working("drawing the picture", compiles=False):
-            from siggen.views.flank_figure import save_flank_figure
+            from siggen.views.flank import save_flank_figure
 
             save_flank_figure(views, png)
         picture.drawn(png)

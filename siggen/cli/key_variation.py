@@ -9,7 +9,7 @@ from dataclasses import replace
 from siggen.errors import UsageError
 from siggen.gearbox.design import SetDesign
 from siggen.keys.problems import nearest
-from siggen.views.stiffness_curves import StiffnessCurve, stiffness_curves
+from siggen.views.stiffness import StiffnessCurve, stiffness_curves
 
 
 def varied(text: str, design: SetDesign) -> Iterator[tuple[str, list[str], int]]:

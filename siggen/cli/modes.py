@@ -16,7 +16,7 @@ from siggen.cli.working import working
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from siggen.views.natural_modes import SpecimenModes
+    from siggen.views.modes import SpecimenModes
 
 
 @grouped
@@ -42,7 +42,7 @@ def modes(
 
     if out is not None:
         check_table_file(out)
-    from siggen.views.natural_modes import specimen_modes
+    from siggen.views.modes import specimen_modes
 
     png = picture.place("modes")
     with working("computing natural modes"):
@@ -58,7 +58,7 @@ def modes(
         echo(str(out), err=as_json)
     if png is not None:
         with working("drawing the picture", compiles=False):
-            from siggen.views.modes_figure import save_modes_figure
+            from siggen.views.modes import save_modes_figure
 
             save_modes_figure(found, png)
         picture.drawn(png)
@@ -68,7 +68,7 @@ def _printed(found: SpecimenModes) -> Table:
     """Return frequency, share of the mesh and the two degrees of freedom that hold most of the kinetic energy."""
     from rich.table import Table
 
-    from siggen.views.natural_modes import kinetic_shares
+    from siggen.views.modes import kinetic_shares
 
     means = found.mesh_stiffness_n_per_m.items()
     stiffness = ", ".join(f"{value:.3g}{f' ({mesh})' if len(means) > 1 else ''}" for mesh, value in means)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from siggen.drivetrain.box import Box
-    from siggen.views.path_curves import PathCurves
+    from siggen.views.path import PathCurves
 
 
 SHOWN = 12
@@ -53,7 +53,7 @@ def path(
 
     if out is not None:
         check_table_file(out)
-    from siggen.views.path_curves import path_curves
+    from siggen.views.path import path_curves
 
     png = picture.place("path")
     with working("computing transfer paths"):
@@ -73,7 +73,7 @@ def path(
         echo(str(modes), err=as_json)
     if png is not None:
         with working("drawing the picture", compiles=False):
-            from siggen.views.path_figure import save_path_figure
+            from siggen.views.path import save_path_figure
 
             save_path_figure(found, png)
         picture.drawn(png)
@@ -82,7 +82,7 @@ def path(
 def _write_modes(found: PathCurves, path: Path) -> None:
     from siggen.errors import UsageError
     from siggen.file_writing import write_file
-    from siggen.views.exported_modes import exported_modes
+    from siggen.views.exported_model import exported_modes
 
     if found.housing is None:
         raise UsageError("no sensor stands on a housing that gives way: allowed is housing.kind: plates")

@@ -30,7 +30,7 @@ class PictureOptions:
         UsageError
             If the ending of --png is none that is drawn.
         """
-        from siggen.views.picture_file import check_picture_file
+        from siggen.views.pictures import check_picture_file
 
         if self.png is None and not self.show:
             return None

@@ -42,8 +42,13 @@ def pressure(
     """
     from siggen.cli.record_choice import chosen_record
     from siggen.dataset.table_file import write_table_file
-    from siggen.views.face_pressure import face_pressure, pressure_table
-    from siggen.views.pressure_figure import chosen_positions, largest_text, save_pressure_figure
+    from siggen.views.pressure import (
+        chosen_positions,
+        face_pressure,
+        largest_text,
+        pressure_table,
+        save_pressure_figure,
+    )
 
     png = picture.place("pressure")
     check_wanted(out, png, "pressure")

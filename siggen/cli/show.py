@@ -39,7 +39,7 @@ def show(
     found = dataset.record(record)
     if (png := picture.place("show")) is not None:
         with working("drawing the picture", compiles=False):
-            from siggen.views.record_figure import save_record_figure
+            from siggen.views.record import save_record_figure
 
             save_record_figure(found, _channel(dataset, channel), dataset.fs_hz, png)
         picture.drawn(png)

@@ -42,7 +42,7 @@ def spectrum(
     from siggen.errors import UsageError
     from siggen.library.gearbox import draw
     from siggen.library.running import run
-    from siggen.views.picture_file import save_figure
+    from siggen.views.pictures import save_figure
 
     png = picture.place("spectrum")
     if png is None:

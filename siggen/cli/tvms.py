@@ -84,13 +84,13 @@ def tvms(
     from siggen.checks.loading import load_config
     from siggen.cli.key_variation import varied, varied_curves
     from siggen.dataset.table_file import write_table_file
-    from siggen.views.stiffness_curves import (
+    from siggen.views.stiffness import (
         curve_table,
+        save_stiffness_figure,
         static_torque_nm,
         stiffness_curves,
         stiffness_meaning,
     )
-    from siggen.views.stiffness_figure import save_stiffness_figure
 
     png = picture.place("tvms")
     check_wanted(out, png, "tvms")

@@ -8,7 +8,7 @@ from typing import Any
 
 from siggen.errors import UsageError, how_to_install
 from siggen.uncollected import uncollected
-from siggen.views.figure_style import figure_style
+from siggen.views.pictures import figure_style
 
 
 @contextmanager

@@ -34,9 +34,8 @@ from siggen.record.static_mesh import static_mesh
 from siggen.record.teeth import load_at_rest
 from siggen.rig.rating import bearable_torque_nm, rated_torque_nm
 from siggen.views.chosen_mesh import chosen_mesh
-from siggen.views.flank_figure import draw_flank
-from siggen.views.flank_views import flank_view
-from siggen.views.stiffness_curves import (
+from siggen.views.flank import draw_flank, flank_view
+from siggen.views.stiffness import (
     BY_ENERGY,
     POINTS_PER_PITCH,
     damaged_engagements,

@@ -11,7 +11,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.library.arguments import finite, named, one_of
 from siggen.library.axes import drawing, legend_above, new_axes
-from siggen.views.figure_style import PALETTE
+from siggen.views.pictures import PALETTE
 
 __all__ = ["LineOrders", "Record", "Spectrum"]
 

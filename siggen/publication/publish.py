@@ -234,7 +234,7 @@ def _previews(dataset: Dataset) -> dict[str, bytes]:
     """Return a picture of the first record of every state."""
     from io import BytesIO
 
-    from siggen.views.record_figure import record_figure
+    from siggen.views.record import record_figure
 
     labels = dataset.labels(columns=["record_id", "state"]).to_pylist()
     first = {row["state"]: row["record_id"] for row in reversed(labels)}

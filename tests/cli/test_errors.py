@@ -13,8 +13,7 @@ from typer.testing import CliRunner
 from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import UsageError
-from siggen.views.error_figure import error_figure
-from siggen.views.tooth_deviations import gear_charts
+from siggen.views.errors import error_figure, gear_charts
 
 CLASS_6 = ["--set", "manufacture={accuracy_class: 6}"]
 runner = CliRunner()

@@ -15,8 +15,7 @@ from typer.testing import CliRunner
 from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import UsageError
-from siggen.views.flank_figure import MOST_FLANKS, flank_figure
-from siggen.views.flank_views import flank_views
+from siggen.views.flank import MOST_FLANKS, flank_figure, flank_views
 from tests.config.minimal import design
 from tests.views.test_damage_outline import polygon_area
 

@@ -11,8 +11,7 @@ from typer.testing import CliRunner
 
 from siggen.cli.app import app
 from siggen.errors import UsageError
-from siggen.views.figure_style import PALETTE
-from siggen.views.picture_file import save_figure
+from siggen.views.pictures import PALETTE, save_figure
 
 runner = CliRunner()
 

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from siggen.cli.app import app
 from siggen.dataset.reading import open as open_set
 from siggen.errors import UsageError, how_to_install
-from siggen.views.record_figure import SIDEBANDS, amplitude_spectrum, record_figure
+from siggen.views.record import SIDEBANDS, amplitude_spectrum, record_figure
 from tests.dataset.fake_set import write_fake_set
 
 

@@ -13,7 +13,7 @@ from siggen.mesh.damage_summary import damage_summary
 from siggen.mesh.mesh_tables import largest_stiffness_loss, mesh_tables
 from siggen.mesh.stiffness_options import StiffnessOptions
 from siggen.mesh.table_options import TableOptions
-from siggen.views.flank_views import _views
+from siggen.views.flank import _views
 from tests.damage.toy_hinge import Hinge
 from tests.gears.builders import pair_18_47, pit
 

@@ -18,7 +18,7 @@ from siggen.library.shape_fault import shape_of
 from siggen.mesh.contact_table import contact_table
 from siggen.mesh.stiffness_options import StiffnessOptions
 from siggen.mesh.table_options import TableOptions, face_slices
-from siggen.views.stiffness_curves import stiffness_curves
+from siggen.views.stiffness import stiffness_curves
 
 mpl.use("Agg")
 PAIR = GearPair.of(teeth=(18, 47), module_mm=3.5, face_width_mm=20, bores_mm=(25, 40))

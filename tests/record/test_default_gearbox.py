@@ -6,7 +6,7 @@ import numpy as np
 
 from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
-from siggen.views.natural_modes import specimen_modes
+from siggen.views.modes import specimen_modes
 from tests.config.minimal import minimal
 from tests.simulated import internals_table, simulate
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from siggen.damage.outlines import rectangle
-from siggen.views.flank_views import outline_mm
+from siggen.views.flank import outline_mm
 from tests.gears.builders import pit
 
 

@@ -13,7 +13,7 @@ from siggen.checks.loading import load_config
 from siggen.cli.app import app
 from siggen.errors import UsageError
 from siggen.record.internals import record_internals
-from siggen.views.face_pressure import FacePressure, face_pressure
+from siggen.views.pressure import FacePressure, face_pressure
 from tests.config.mill import mill
 from tests.config.minimal import by_name
 from tests.config.staged import SPALL as SPALL_OF_STAGE

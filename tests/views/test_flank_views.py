@@ -7,7 +7,7 @@ import pytest
 
 from siggen.checks.loading import load_config
 from siggen.errors import UsageError
-from siggen.views.flank_views import flank_damage_table, flank_views
+from siggen.views.flank import flank_damage_table, flank_views
 from tests.config.minimal import design
 from tests.views.test_damage_outline import polygon_area
 

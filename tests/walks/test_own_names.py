@@ -22,7 +22,7 @@ from siggen.checks.loading import load_config
 from siggen.columns.record import SimulatedRecord
 from siggen.config import yaml_text
 from siggen.errors import UsageError
-from siggen.views.face_pressure import face_pressure
+from siggen.views.pressure import face_pressure
 from tests.command import command
 from tests.config.mill import mill
 from tests.config.minimal import by_name

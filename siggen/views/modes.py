@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyarrow as pa
@@ -14,6 +16,11 @@ from siggen.mesh.mesh_force import mean_mesh_stiffness
 from siggen.mesh.mesh_tables import mesh_tables
 from siggen.motion.modes import MotionModes, natural_modes
 from siggen.record.structure import structure
+from siggen.views.pictures import save_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 
 FIRST = "first"
 """The mesh without a name."""
@@ -58,3 +65,36 @@ def kinetic_shares(found: SpecimenModes) -> FloatArray:
     """Return the share of each degree of freedom in the kinetic energy of each mode, (modes, n)."""
     # Mass-normalised shapes: rows add to 1; bodies that move with others, such as planets, make the mass no diagonal.
     return np.asarray(found.modes.shapes * (found.modes.shapes @ found.mass))
+
+
+# The picture of `siggen inspect modes`: who moves in each mode, beside its frequency and the share of the mesh.
+
+
+def modes_figure(found: SpecimenModes) -> Figure:
+    """Return the figure: kinetic energy by degree of freedom on the left, strain energy of the mesh on the right."""
+    from matplotlib.figure import Figure
+
+    count = len(found.coordinates)
+    figure = Figure(figsize=(9.0, 0.4 * count + 1.8), layout="constrained")
+    shapes, mesh = figure.subplots(1, 2, sharey=True, width_ratios=(4, 1))
+    image = shapes.imshow(100.0 * kinetic_shares(found), aspect="auto", cmap="Blues", vmin=0.0, vmax=100.0)
+    shapes.grid(visible=False)
+    shapes.set_xticks(range(count), found.coordinates, rotation=45)
+    shapes.set_yticks(range(count), [f"{f:.1f} Hz" for f in found.modes.frequency_hz])
+    shapes.set_title("share of kinetic energy [%]")
+    figure.colorbar(image, ax=shapes, location="left")
+    mesh.barh(range(count), 100.0 * found.modes.mesh_share, color="C3")
+    mesh.set_xlim(0.0, 100.0)
+    mesh.set_title("strain energy in the mesh [%]", loc="right", fontsize="medium")
+    return figure
+
+
+def save_modes_figure(found: SpecimenModes, path: Path) -> None:
+    """Draw the modes into a file.
+
+    Raises
+    ------
+    UsageError
+        If matplotlib is missing or the ending is none that it draws.
+    """
+    save_figure(lambda: modes_figure(found), path)

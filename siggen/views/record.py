@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from siggen.errors import counted
-from siggen.views.picture_file import save_figure
+from siggen.views.pictures import save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
