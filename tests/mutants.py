@@ -28,7 +28,19 @@ from siggen.compiled import WITH_COMPILED_CODE
 from siggen.sources import sources_digest
 
 ROOT = Path(__file__).resolve().parents[1]
-FOLDERS = ("gears", "dynamics", "sensing", "specimen", "planning", "record", "columns", "dataset", "sets")
+FOLDERS = (
+    "gears",
+    "drivetrain",
+    "damage",
+    "mesh",
+    "motion",
+    "sensing",
+    "gearbox",
+    "record",
+    "columns",
+    "dataset",
+    "sets",
+)
 SWAPPED = {ast.Add: "-", ast.Sub: "+", ast.Mult: "/", ast.Div: "*", ast.Lt: "<=", ast.LtE: "<", ast.Gt: ">="}
 SWAPPED |= {ast.GtE: ">", ast.Eq: "!=", ast.NotEq: "==", ast.And: "or", ast.Or: "and"}
 ONE_DIGEST = """
@@ -109,6 +121,7 @@ def _code(node: ast.AST) -> Iterator[ast.AST]:
 
 def drawn(count: int, seed: int) -> list[Mutant]:
     """Return as many mutants as asked for, drawn from all of physics and data code."""
+    assert all((ROOT / "siggen" / folder).is_dir() for folder in FOLDERS)
     files = sorted(path for folder in FOLDERS for path in (ROOT / "siggen" / folder).rglob("*.py"))
     every = [mutant for file in files for mutant in mutants(file)]
     return random.Random(seed).sample(every, count)

@@ -356,7 +356,8 @@ def evaluate(model: Any, data: FeatureMatrix, *, beside: bool = False, seed: int
     Raises
     ------
     UsageError
-        If the model lacks these methods, or fewer than four gearboxes have healthy or damaged records.
+        If the model lacks these methods, a score is not finite, or fewer than four gearboxes have healthy or damaged
+        records.
     """
     if not hasattr(model, "fit") or not any(hasattr(model, name) for name in ("decision_function", "predict_proba")):
         what = f"{type(model).__name__} without `fit` and `decision_function` or `predict_proba`"
@@ -370,6 +371,9 @@ def evaluate(model: Any, data: FeatureMatrix, *, beside: bool = False, seed: int
     entry = Entry(type(model).__name__, lambda: Odds(deepcopy(model)), taken.values, np.ones(len(taken.values), bool))
     damaged, fold = taken.labels["fault"] != HEALTHY, DESIGN.dealt(taken.groups, seed)[0]
     score = pooled_scores(entry, damaged, taken.groups, fold)[0]
+    if wrong := int((~np.isfinite(score)).sum()):
+        what = f"{type(model).__name__}, whose scores of {wrong} of {len(score)} records are no finite numbers"
+        raise UsageError(f"evaluate: received {what}; allowed: a finite score for every record")
     found = judged_alarm(entry.name, score, taken.labels, seed, referenced=beside)
     assert found is not None
     return found

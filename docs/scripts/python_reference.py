@@ -70,7 +70,7 @@ def member(name: str, value: Any) -> str:
 def signature(name: str, value: Any) -> str:
     """Return how it is called, its types as they are written."""
     if inspect.isclass(value) and is_dataclass(value):
-        shown = [one for one in fields(value) if not one.name.startswith("_")]
+        shown = [one for one in fields(value) if one.init and not one.name.startswith("_")]
         return f"class {name}({', '.join(f'{one.name}: {one.type}' for one in shown)})"
     if inspect.isclass(value):
         return f"class {name}"

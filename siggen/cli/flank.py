@@ -50,7 +50,9 @@ def flank(
         table = flank_damage_table(drawn, state, of)
         views = flank_views(drawn, state, of) if png is not None else []
     if png is not None and not views:
-        raise UsageError(f"{png}: there is no damage to draw in {state or 'any state'}; leave out --png and --open")
+        where = "" if gearbox.stage is None else f" on {gearbox.stage}"
+        other = "leave out --png and --open" if gearbox.stage is None else "leave out --stage for all meshes"
+        raise UsageError(f"{png}: there is no damage to draw{where} in {state or 'any state'}; {other}")
     if out is not None:
         write_table_file(_without_lists(table) if out.suffix.lower() == ".csv" else table, out)
         echo(str(out))

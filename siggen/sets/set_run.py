@@ -107,7 +107,7 @@ def set_run(
     events: Events | None = None,
     limit: LossLimit | None = None,
 ) -> SetRun:
-    """Return a run that makes what is missing of a set; `earlier` as for `planning.plan.shards`."""
+    """Return a run that makes what is missing of a set; `earlier` as for `siggen.gearbox.plan.shards`."""
     journal = RunJournal(events, limit=limit)
     with journal.driver.during("planning"):
         physics = contents.physics()

@@ -21,6 +21,16 @@ GEARBOXES, NOISE_COLUMNS = 24, 400
 STATES = ("healthy", "slight", "severe")
 
 
+class Silent:
+    """Scores nothing."""
+
+    def fit(self, X: np.ndarray, y: np.ndarray) -> None:
+        pass
+
+    def decision_function(self, X: np.ndarray) -> np.ndarray:
+        return np.full(len(X), np.nan)
+
+
 def matrix_of(values: np.ndarray, healthy_records: int = 1) -> FeatureMatrix:
     states = ("healthy",) * (healthy_records - 1) + STATES
     specimen, place = (part.ravel() for part in np.mgrid[:GEARBOXES, : len(states)])
@@ -148,5 +158,7 @@ def test_any_classifier_is_judged_as_those_of_a_report_are() -> None:
     assert evaluate(LinearSVC(), matrix).specimens == GEARBOXES  # has no probabilities
     with pytest.raises(UsageError, match=r"received KMeans without `fit` and `decision_function` or `predict_proba`"):
         evaluate(KMeans(2), matrix)
+    with pytest.raises(UsageError, match=r"received Silent, whose scores of \d+ of \d+ records are no finite numbers"):
+        evaluate(Silent(), matrix)
     with pytest.raises(UsageError, match=r"allowed: 4 or more with healthy records, and as many with damaged ones$"):
         evaluate(own, matrix.rows(matrix.groups < 3))
