@@ -42,7 +42,7 @@ def test_a_wheel_and_a_checkout_of_the_same_sources_have_the_same_digest(install
         ("record/simulation.py", True),
         ("seeding.py", True),
         ("cli/app.py", False),
-        ("views/record_figure.py", False),
+        ("views/record.py", False),
         ("engines/dask_engine.py", False),
         ("publication/publish.py", False),
     ],
