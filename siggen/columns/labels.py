@@ -208,6 +208,14 @@ DAMAGE_COLUMNS = (
 )
 SHAFT_HZ = Column("{}_shaft_hz", pa.float64(), HERTZ, "rotation frequency of {}")
 TORQUE = Column("torque_nm", pa.float64(), "N m", "torque at the input shaft")
+OIL_TEMPERATURE = Column(
+    "oil_temperature_c",
+    pa.float64(),
+    "°C",
+    "of the oil, as given or as losses have warmed it",
+    Role.CONDITION,
+    "dynamics",
+)
 
 
 def target_columns(names: Names) -> tuple[Column, ...]:
@@ -293,6 +301,7 @@ def common_columns(gearbox: Specimen) -> tuple[Column, ...]:
         *target_columns(names),
         *gearbox.states[0].labels,
         *operating_columns(names, planetary=planetary),
+        *((OIL_TEMPERATURE,) if gearbox.oiled else ()),
         *(INTEGRATION_COLUMNS if gearbox.law.method == "exponential" else ()),
         *gearbox.labels,
         *(HOUSING_COLUMNS if gearbox.boxed else ()),

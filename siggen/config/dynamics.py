@@ -110,8 +110,10 @@ class Friction(Section):
     oil: Oil = Field(
         default="ISO VG 220", description="mineral gear oil (mixed_ehl); a list: each gearbox draws one of them"
     )
-    oil_temperature_c: Annotated[Number, Within(least=-20, most=150), Usual(5, 120)] = Field(
-        default=50.0, description="at the inlet of the contact"
+    oil_temperature_c: Annotated[Number | None, Within(least=-20, most=150, words=(None,)), Usual(5, 120)] = Field(
+        default=None,
+        description="at the inlet of the contact; null: what the losses of each operating point warm the oil to, up to "
+        "90, from where on a cooler holds it",
     )
     boundary_friction: Annotated[Number, Within(least=0, most=0.5), Usual(0.02, 0.3)] = Field(
         default=Uniform(low=0.07, high=0.11), description="friction coefficient of asperities, by the oil's additives"

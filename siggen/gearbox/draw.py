@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from math import radians
 
@@ -15,9 +16,10 @@ from siggen.gearbox.channels import drawn_channels
 from siggen.gearbox.configured import gearbox_config, gearbox_life, state_config
 from siggen.gearbox.drive import drawn_unbalance, drawn_variation
 from siggen.gearbox.drivetrain import drawn_dynamics, drawn_gears
-from siggen.gearbox.housing import drawn_housing
+from siggen.gearbox.housing import drawn_housing, walls_m2
 from siggen.gearbox.labels import gearbox_labels, state_labels
 from siggen.gearbox.specimen import DrawnState, OperatingPoint, PairTrain, PlanetaryGears, Specimen, ToothMesh
+from siggen.gearbox.sump import Sump
 from siggen.gearbox.teeth import Drawing, draw_teeth, gear_pair, mesh_seed, on_one_body, stiffness_options, tooth_law
 from siggen.gearbox.train import (
     ball_bearings,
@@ -26,6 +28,7 @@ from siggen.gearbox.train import (
     next_stages,
     planetary_stage,
     planetary_teeth,
+    ring_outer_radius_m,
 )
 from siggen.gears.gear_pair import idler_later_rad
 from siggen.gears.planetary import ring_round
@@ -71,7 +74,8 @@ def _drawn(config: Config, own: Config, specimen_id: int) -> Specimen:
     sensor = named_uniforms(config.seed, Stream.SENSOR, specimen_id)
     sensors = tuple(one.drawn(sensor) for one in own.sensors)
     points = tuple(draw_operating_point(own, specimen_id, number) for number in range(len(own.operating_points)))
-    return Specimen(
+    housing = drawn_housing(own, specimen_id, dynamics, meshes[0].pair, sensors)
+    found = Specimen(
         specimen_id,
         seed=own.seed,
         names=own.names,
@@ -81,7 +85,7 @@ def _drawn(config: Config, own: Config, specimen_id: int) -> Specimen:
         law=law,
         train=_train(dynamics, stages, meshes) if planets is None else None,
         planets=planets,
-        housing=drawn_housing(own, specimen_id, dynamics, meshes[0].pair, sensors),
+        housing=housing,
         unbalance=drawn_unbalance(dynamics, own.names, supports),
         background=drawn_background(own, specimen_id),
         channels=tuple(drawn_channels(own, specimen_id, sensors)),
@@ -93,6 +97,11 @@ def _drawn(config: Config, own: Config, specimen_id: int) -> Specimen:
         stored=None if own.internals is None else own.internals.quantities,
         bearing_point=points[0] if balls else None,
     )
+    if dynamics.friction.oil_temperature_c is not None:
+        return found
+    ring_m = None if planets is None else ring_outer_radius_m(planets.ring)
+    area_m2 = walls_m2(housing, [mesh.pair for mesh in meshes], ring_m)
+    return replace(found, oil_c=Sump.drawn(found, area_m2, supports)).under(points[0])
 
 
 def _state(config: Config, own: Config, specimen_id: int, number: int) -> DrawnState:

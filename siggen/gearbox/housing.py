@@ -20,7 +20,7 @@ from siggen.gearbox.mode_table import ModeTable, mode_table
 from siggen.gears.gear_pair import GearPair
 from siggen.keys.distributions import Uniform
 from siggen.keys.drawing import draw
-from siggen.keys.number import Number, Within, at, constant
+from siggen.keys.number import MIDDLE, Number, Within, at, constant
 from siggen.keys.section import Section
 from siggen.names import Side
 from siggen.seeding import Stream, named_generator, named_uniforms
@@ -274,6 +274,34 @@ class Block:
 
 
 Housing: TypeAlias = Plates | ModeTable | Block
+
+
+def walls_m2(housing: Housing | None, pairs: Sequence[GearPair], ring_m: float | None) -> float:
+    """Return the area of the walls [m²]: of plates as they are, else of a typical box round the gears, laid flat.
+
+    Parameters
+    ----------
+    housing : as it is drawn
+    pairs : of a train; of a planetary set in a ring, whose outer radius is `ring_m` [m]
+    """
+    if isinstance(housing, Plates):
+        held, around = housing.contents, housing.proportions
+        length_m = held.centre_distance_m + sum(held.tip_radius_m) + 2.0 * around.end_m
+        height_m = 2.0 * max(held.tip_radius_m) + around.above_m + around.sump_m
+        return _box_m2(length_m, height_m, held.face_width_m + 2.0 * around.side_m)
+    room = plate_numbers(PlateHousing(), lambda _: MIDDLE)
+    centres_m, tips_m = [pair.working_centre_distance_m for pair in pairs], [pair.gear.tip_radius_m for pair in pairs]
+    size_m, width_m = max(centres_m), sum(pair.face_width_m for pair in pairs)
+    length_m, height_m = pairs[0].pinion.tip_radius_m + sum(centres_m) + tips_m[-1], 2.0 * max(tips_m)
+    if ring_m is not None:
+        length_m, height_m, width_m = 2.0 * ring_m, 2.0 * ring_m, pairs[0].face_width_m
+    end, side = constant(room.end), constant(room.side)
+    above, sump = constant(room.above), constant(room.sump)
+    return _box_m2(length_m + 2.0 * end * size_m, height_m + (above + sump) * size_m, width_m + 2.0 * side * size_m)
+
+
+def _box_m2(length_m: float, height_m: float, width_m: float) -> float:
+    return 2.0 * (length_m * height_m + length_m * width_m + height_m * width_m)
 
 
 def drawn_housing(

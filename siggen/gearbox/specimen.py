@@ -20,7 +20,7 @@ from siggen.gearbox.life import Lived
 from siggen.gearbox.teeth import Teeth
 from siggen.gears.gear_pair import GearPair
 from siggen.gears.planetary import InternalPair, PlanetarySet
-from siggen.mesh.tooth_law import ToothLaw
+from siggen.mesh.tooth_law import MIXED_EHL, ToothLaw
 from siggen.motion.response import Sampling
 from siggen.names import Names, Side
 
@@ -137,6 +137,7 @@ class Specimen:
     life : how its teeth pitted, of a set that runs to failure
     stored : what no sensor sees and a record holds: names, or all; None: nothing
     bearing_point : the operating point under whose load its bearings stand; None where they have one stiffness
+    oil_c : operating point -> temperature of its oil [°C]; None where that is given
     """
 
     specimen_id: int
@@ -159,6 +160,7 @@ class Specimen:
     life: Lived | None
     stored: tuple[str, ...] | None = None
     bearing_point: OperatingPoint | None = None
+    oil_c: Callable[[OperatingPoint], float] | None = field(default=None, compare=False)
 
     @property
     def housed(self) -> bool:
@@ -174,6 +176,11 @@ class Specimen:
     def passes_forces(self) -> bool:
         """Whether sensors hear forces of bearings through its housing, beside its motion with the gears."""
         return self.housed and (self.planets is not None or not isinstance(self.housing, Block))
+
+    @property
+    def oiled(self) -> bool:
+        """Whether its oil acts on records: by the friction of its teeth, or by the noise of their rubbing."""
+        return self.law.friction.model == MIXED_EHL or self.background is not None
 
     @property
     def pair(self) -> GearPair:
@@ -219,5 +226,9 @@ class Specimen:
         return self if changed is None else changed()
 
     def under(self, point: OperatingPoint) -> Specimen:
-        """Return the gearbox at an operating point; itself where its bearings have one stiffness."""
-        return self if self.bearing_point in (None, point) else replace(self, bearing_point=point)
+        """Return the gearbox at an operating point: its bearings under load, its oil warmed; itself where none does."""
+        loaded = self if self.bearing_point in (None, point) else replace(self, bearing_point=point)
+        if self.oil_c is None or not self.oiled:
+            return loaded
+        warmed = self.law.with_oil_at(self.oil_c(point))
+        return loaded if warmed == self.law else replace(loaded, law=warmed)

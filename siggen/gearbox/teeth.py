@@ -400,12 +400,16 @@ def typical_tooth_law() -> ToothLaw:
     return tooth_law(draw(Dynamics(), lambda _: MIDDLE, "dynamics"))
 
 
+TYPICAL_OIL_C = 50.0
+"""Where no file gives it, until a gearbox stands at an operating point."""
+
+
 def _flank_friction(section: Friction, model: str) -> FlankFriction:
     return FlankFriction(
         model=model,
         coefficient=constant(section.coefficient),
         oil=str(section.oil),
-        oil_temperature_c=constant(section.oil_temperature_c),
+        oil_temperature_c=constant(TYPICAL_OIL_C if section.oil_temperature_c is None else section.oil_temperature_c),
         roughness_m=1e-6 * constant(section.roughness_um),
         pit_roughness_m=1e-6 * constant(section.pit_roughness_um),
         boundary_friction=constant(section.boundary_friction),

@@ -78,6 +78,10 @@ class ToothLaw:
     tilts: bool
     friction: FlankFriction
 
+    def with_oil_at(self, temperature_c: float) -> ToothLaw:
+        """Return the law with oil of another temperature [°C]."""
+        return replace(self, friction=replace(self.friction, oil_temperature_c=temperature_c))
+
     @property
     def across_the_face(self) -> bool:
         """Whether the contact is solved across the face, so that damage is geometry and may take its whole length."""

@@ -8,6 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from siggen.columns.labels import OIL_TEMPERATURE
 from siggen.columns.record import RecordFailure, SimulatedRecord, label_columns
 from siggen.errors import SolverFailure
 from siggen.gearbox.plan import PlannedRecord
@@ -66,11 +67,11 @@ def record_response(
 
 
 def at_point(specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> tuple[Specimen, SpecimenState]:
-    """Return a specimen and its state under the load of a record; as they are where bearings have one stiffness."""
-    if specimen.bearing_point is None:
-        return specimen, state
-    specimen = specimen.under(specimen.points[record.operating_point_id])
-    return specimen, replace(state, mesh=state.mesh.on(structure(specimen)))
+    """Return a specimen and its state at the point of a record; the structure of bearings of one stiffness stays."""
+    found = specimen.under(specimen.points[record.operating_point_id])
+    if found.bearing_point is None:
+        return found, state
+    return found, replace(state, mesh=state.mesh.on(structure(found)))
 
 
 def state_drive(specimen: Specimen, state: SpecimenState, record: PlannedRecord) -> RecordDrive:
@@ -152,6 +153,7 @@ def simulated(
         **state.labels,
         **operating,
         **stage_operating_labels(specimen, operating, [one.static for one in state.behind]),
+        **({OIL_TEMPERATURE.name: specimen.law.friction.oil_temperature_c} if specimen.oiled else {}),
         **stepped,
         **variation_labels(sampling, driven),
         "start_angle_rad": float(ends_rad[0]),

@@ -207,10 +207,10 @@ class RecordedMachine:
     labels: dict[str, object]
 
     def at_point(self, operating_point_id: int) -> RecordedMachine:
-        """Return the machine under the load of an operating point; itself where its bearings have one stiffness."""
+        """Return the machine at an operating point; its instrument stays where its bearings have one stiffness."""
         specimen = self.specimen.under(self.specimen.points[operating_point_id])
-        if specimen is self.specimen:
-            return self
+        if specimen.bearing_point == self.specimen.bearing_point:
+            return self if specimen is self.specimen else replace(self, specimen=specimen)
         with stage("sensing"):
             return replace(self, specimen=specimen, instrument=specimen_instrument(specimen))
 

@@ -83,7 +83,7 @@ def test_a_planetary_section_that_is_wrong_brings_no_problem_of_what_names_its_g
 DRAWN_CHANGES = (
     "pinion.mass_kg", "pinion.bearing.geometry.clearance_um", "gear.bearing.damping_time_s", "gear.mass_kg",
     "shafts.driver.diameter_mm", "input_coupling.stiffness_nm_per_rad", "load_inertia_kg_m2", "unbalance.grade_mm_s",
-    "friction.oil_temperature_c", "mesh.structure_damping_ratio",
+    "friction.boundary_friction", "mesh.structure_damping_ratio",
 )  # fmt: skip
 
 

@@ -94,6 +94,7 @@ def fake_record(config: SetDesign, planned: PlannedRecord) -> SimulatedRecord:
         "gear_shaft_hz": 30.0 * 18 / 47,
         "mesh_hz": 540.0,
         "mesh_stiffness_loss_as_simulated": 0.008 * pits,
+        "oil_temperature_c": 50.0,
         "start_angle_rad": float(rng.random()),
         **(STEPPED if config.config.dynamics.method == "exponential" else {}),
     }
