@@ -106,7 +106,6 @@ def test_draws_follow_the_distribution(thousand):
 
 
 def test_constants_need_no_luck():
-    friction = {"boundary_friction": 0.09, "roughness_um": 0.4, "oil_temperature_c": 50.0, "air_temperature_c": 20.0}
     constants = design(
         **{f"dynamics__friction__{key}": value for key, value in (friction | {"warm_share": 1.0}).items()}
     )
