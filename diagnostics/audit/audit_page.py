@@ -20,8 +20,18 @@ from diagnostics.audit.detectability import (
 )
 from diagnostics.audit.envelope import QuantityShare, Realism
 from diagnostics.audit.reference_comparison import FEWEST_GEARBOXES, FEWEST_RECORDINGS, TELLING_AUC, ReferenceComparison
-from diagnostics.page import html
-from diagnostics.page.html import Cell
+from diagnostics.page.blocks import (
+    Block,
+    Cell,
+    FigureBlock,
+    FigureGrid,
+    Heading,
+    Page,
+    Paragraph,
+    TableBlock,
+    note_blocks,
+    summary_blocks,
+)
 from diagnostics.page.provenance import provenance
 from diagnostics.page.style import FAULT_COLOURS, HEALTHY_COLOUR, PINION_COLOUR, new_figure
 from diagnostics.page.tables import interval_cell
@@ -103,14 +113,14 @@ def shown_ladders(audit: Audit) -> dict[str, list[Detectability]]:
     return {name: entries for name, entries in found.items() if entries}
 
 
-def attack_parts(audit: Audit) -> list[str]:
+def attack_parts(audit: Audit) -> list[Block]:
     """Return the tables of the attackers; nothing where none could judge."""
     if not audit.states:
         return []
-    return [html.paragraph(f"{HOW} {chance_sentence(audit)}".strip()), _strongest_table(audit), _every_table(audit)]
+    return [Paragraph(f"{HOW} {chance_sentence(audit)}".strip()), _strongest_table(audit), _every_table(audit)]
 
 
-def _strongest_table(audit: Audit) -> str:
+def _strongest_table(audit: Audit) -> TableBlock:
     ladders = [{entry.state: entry for entry in audit.ladder(referenced=side)} for side in (False, True)]
     rows = []
     for state in audit.states:
@@ -126,7 +136,7 @@ def _strongest_table(audit: Audit) -> str:
         "networks, the teeth and the older probes reaches as much. Each state is a test of its own: of twenty "
         "states without any effect one lies at 0.05 or below."
     )
-    return html.table(head, rows, caption=caption, text=True)
+    return TableBlock(head, rows, caption=caption, text=True)
 
 
 def _chance_cell(audit: Audit, state: str) -> Cell:
@@ -137,7 +147,7 @@ def _chance_cell(audit: Audit, state: str) -> Cell:
     return Cell(f"{law.p_value:.3f}", value=law.p_value)
 
 
-def _every_table(audit: Audit) -> str:
+def _every_table(audit: Audit) -> TableBlock:
     rows = []
     for name, entries in audit.detections.items():
         by_state = {entry.state: entry.auc.value for entry in entries}
@@ -147,7 +157,7 @@ def _every_table(audit: Audit) -> str:
         rows.append([Cell(capitalised(name)), Cell(str(number), value=number), *shown])
     head = ["Attacker", "Columns", *audit.states]
     caption = "Every attacker on every state: AUC against healthy on gearboxes that were not seen."
-    return html.table(head, rows, caption=caption, sortable=True)
+    return TableBlock(head, rows, caption=caption, sortable=True)
 
 
 OUTSIDE = 0.05
@@ -192,7 +202,7 @@ def _discriminator_sentence(found: ReferenceComparison) -> str:
     )
 
 
-def reference_parts(found: ReferenceComparison) -> list[str]:
+def reference_parts(found: ReferenceComparison) -> list[Block]:
     """Return the tables of the page."""
     rows = [
         [
@@ -209,9 +219,9 @@ def reference_parts(found: ReferenceComparison) -> list[str]:
     ]
     place_head = ["Recording", "Distance [spreads]", "Channels as far [%]", "Windows"]
     return [
-        *(html.paragraph(text) for text in reference_sentences(found)),
-        html.table(place_head, places, caption=PLACE_CAPTION, sortable=True),
-        html.table(head, rows, caption=GAPS_CAPTION, sortable=True),
+        *(Paragraph(text) for text in reference_sentences(found)),
+        TableBlock(place_head, places, caption=PLACE_CAPTION, sortable=True),
+        TableBlock(head, rows, caption=GAPS_CAPTION, sortable=True),
     ]
 
 
@@ -411,28 +421,28 @@ def _frame(axis: Any, name: str) -> None:
     axis.set_title(name, loc="left", fontsize=9, fontweight="bold")
 
 
-def audit_page(audit: Audit, dataset: Dataset, drawn: dict[str, bytes]) -> str:
+def audit_page(audit: Audit, dataset: Dataset, drawn: dict[str, bytes]) -> Page:
     """Return the page."""
     title = f"Audit of {dataset.path.name}"
     tone = "failed" if audit.findings or audit.tells_too_little else "passed"
-    parts = [html.heading(title, 1), *html.summary(audit_summary(audit), tone), html.heading("Traps")]
-    parts.append(_findings_table(audit) if audit.findings else html.paragraph(audit.verdict))
+    parts: list[Block] = [Heading(title, 1), *summary_blocks(audit_summary(audit), tone), Heading("Traps")]
+    parts.append(_findings_table(audit) if audit.findings else Paragraph(audit.verdict))
     if audit.realism:
-        parts += [html.heading("Against healthy gearboxes"), *_realism_parts(audit.realism, drawn)]
+        parts += [Heading("Against healthy gearboxes"), *_realism_parts(audit.realism, drawn)]
     if audit.reference:
-        parts += [html.heading("Against your recordings"), *reference_parts(audit.reference)]
-    parts.append(html.heading("Detectability"))
+        parts += [Heading("Against your recordings"), *reference_parts(audit.reference)]
+    parts.append(Heading("Detectability"))
     parts += attack_parts(audit)
     if audit.best:
-        parts += [html.paragraph(HOW_SINGLE), _best_table(audit)]
-    parts += [_detection_table(name, found, audit) for name, found in shown_ladders(audit).items()]
+        parts += [Paragraph(HOW_SINGLE), _best_table(audit)]
+    parts += [part for name, found in shown_ladders(audit).items() for part in _detection_parts(name, found, audit)]
     if "detectability" in drawn:
-        parts.append(html.figure_grid([html.figure_block(drawn["detectability"], SIZE_CAPTION)]))
-    parts += [html.heading("Notes"), *html.notes((*audit.notes, provenance(dataset, audit.seed)))]
-    return html.page(title, parts)
+        parts.append(FigureGrid([FigureBlock(drawn["detectability"], SIZE_CAPTION)]))
+    parts += [Heading("Notes"), *note_blocks((*audit.notes, provenance(dataset, audit.seed)))]
+    return Page(title, parts)
 
 
-def _best_table(audit: Audit) -> str:
+def _best_table(audit: Audit) -> TableBlock:
     rows = [
         [
             Cell(state),
@@ -444,16 +454,16 @@ def _best_table(audit: Audit) -> str:
     ]
     head = ["State", "Best indicator", "Its AUC [-]", "Chosen on other gearboxes [-]"]
     caption = f"Best of {counted(tried(audit), 'single indicator')} by state: AUC against healthy, with 95 % limits."
-    return html.table(head, rows, caption=caption, text=True)
+    return TableBlock(head, rows, caption=caption, text=True)
 
 
-def _findings_table(audit: Audit) -> str:
+def _findings_table(audit: Audit) -> TableBlock:
     rows = [[Cell(f.trap), Cell(f.measured), Cell(f.bound), Cell(f.mend)] for f in audit.findings]
     caption = "Traps, what was measured, and how to correct the configuration."
-    return html.table(["Trap", "Measured", "Bound", "How to correct it"], rows, caption=caption, text=True)
+    return TableBlock(["Trap", "Measured", "Bound", "How to correct it"], rows, caption=caption, text=True)
 
 
-def _realism_parts(found: Realism, drawn: dict[str, bytes]) -> list[str]:
+def _realism_parts(found: Realism, drawn: dict[str, bytes]) -> list[Block]:
     text = (
         f"{percent(found.all_inside)} of {counted(found.channel_records, 'healthy channel-record')} lie inside the "
         "ranges of all quantities. A share does not prove that the distribution is right: the ranges come from few "
@@ -466,15 +476,15 @@ def _realism_parts(found: Realism, drawn: dict[str, bytes]) -> list[str]:
         for s in found.spreads
     ]
     return [
-        html.paragraph(text),
-        html.table(head, _share_rows(found.shares), caption=RANGE_CAPTION, sortable=True),
+        Paragraph(text),
+        TableBlock(head, _share_rows(found.shares), caption=RANGE_CAPTION, sortable=True),
         *(
-            [html.table(head, _share_rows(found.background), caption=BACKGROUND_CAPTION, sortable=True)]
+            [TableBlock(head, _share_rows(found.background), caption=BACKGROUND_CAPTION, sortable=True)]
             if found.background
             else []
         ),
-        *([html.table(spread_head, spread, caption="Spread between the sensors of a gearbox.")] if spread else []),
-        html.figure_grid([html.figure_block(drawn["realism"], REALISM_CAPTION)]),
+        *([TableBlock(spread_head, spread, caption="Spread between the sensors of a gearbox.")] if spread else []),
+        FigureGrid([FigureBlock(drawn["realism"], REALISM_CAPTION)]),
     ]
 
 
@@ -491,7 +501,7 @@ def _share_rows(shares: tuple[QuantityShare, ...]) -> list[list[Cell]]:
     ]
 
 
-def _detection_table(name: str, entries: list[Detectability], audit: Audit) -> str:
+def _detection_parts(name: str, entries: list[Detectability], audit: Audit) -> list[Block]:
     sizes = [size for size in SIZES if entries and size in entries[0].sizes]
     rows = [
         [
@@ -503,7 +513,7 @@ def _detection_table(name: str, entries: list[Detectability], audit: Audit) -> s
     ]
     title = name[0].upper() + name[1:]
     if not any(math.isfinite(entry.auc.value) for entry in entries):
-        return html.heading(title, 3) + html.paragraph("No state could be judged. The notes give the reason.")
+        return [Heading(title, 3), Paragraph("No state could be judged. The notes give the reason.")]
     caption = f"AUC against healthy on unseen gearboxes by {name}, with 95 % limits from resampled gearboxes."
     reached = [
         f"{fault}: AUC {target:g} {_reached(length)}"
@@ -511,11 +521,9 @@ def _detection_table(name: str, entries: list[Detectability], audit: Audit) -> s
         for fault, length in length_at(entries, target).items()
         if not audit.gearboxes_needed
     ]
-    return (
-        html.heading(title, 3)
-        + html.table(["State", "AUC [-]", *(SIZE_TITLES[size] for size in sizes)], rows, caption=caption, sortable=True)
-        + (html.paragraph("Interpolated length along the profile: " + "; ".join(reached) + ".") if reached else "")
-    )
+    head = ["State", "AUC [-]", *(SIZE_TITLES[size] for size in sizes)]
+    told = [Paragraph(f"Interpolated length along the profile: {'; '.join(reached)}.")] if reached else []
+    return [Heading(title, 3), TableBlock(head, rows, caption=caption, sortable=True), *told]
 
 
 def _reached(length: DetectedLength | None) -> str:

@@ -47,6 +47,7 @@ from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.judging.evaluation import Entry
 from diagnostics.page.style import png_bytes, styled
+from diagnostics.page.template import write_page
 from diagnostics.records.recording import names_of
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, how_to_install
@@ -310,7 +311,7 @@ def write_audit(audit: Audit, dataset: Dataset, folder: Path) -> Path:
     text = json.dumps(audit_numbers(audit, dataset), indent=1, allow_nan=False)
     write_file(folder / "audit.json", text + "\n")
     path = folder / "audit.html"
-    write_file(path, audit_page(audit, dataset, drawn))
+    write_page(path, audit_page(audit, dataset, drawn))
     return path
 
 

@@ -10,6 +10,7 @@ EXTRA_OF = {
     "sklearn": "diagnostics",
     "matplotlib": "diagnostics",
     "skops": "diagnostics",
+    "jinja2": "diagnostics",
     "torch": "cnn",
     "safetensors": "cnn",
     "nptdms": "recordings",

@@ -20,10 +20,21 @@ from diagnostics.base.extras import missing_packages
 from diagnostics.bench.baselines import REFERENCE
 from diagnostics.bench.question import Ranking
 from diagnostics.bench.questions import question_of
-from diagnostics.page.html import Cell, figure_block, figure_grid, heading, minus, page, paragraph, summary, table
+from diagnostics.page.blocks import (
+    Block,
+    Cell,
+    FigureBlock,
+    FigureGrid,
+    Heading,
+    Page,
+    Paragraph,
+    TableBlock,
+    summary_blocks,
+)
 from diagnostics.page.style import png_bytes
 from diagnostics.page.tables import interval_cell
-from diagnostics.page.wording import capitalised
+from diagnostics.page.template import write_page
+from diagnostics.page.wording import capitalised, minus
 from diagnostics.scoring.benchmark import BASELINES, Benchmark, SealedLabels
 from diagnostics.scoring.benchmark_scores import JudgedPart, judged_parts, part_columns
 from diagnostics.scoring.prediction_file import CLASSIFIER, PREDICTIONS_FILE, prediction_table
@@ -140,12 +151,12 @@ def write_board(benchmark: Benchmark, entries: Sequence[BoardEntry], folder: Pat
     facts = {"digest": benchmark.digest, "simulation_version": benchmark.simulation_version, "entries": numbers}
     write_file(folder / NUMBERS, json.dumps(facts, indent=1, allow_nan=False) + "\n")
     title = f"Leaderboard of {benchmark.title}, {benchmark.tier}"
-    parts = [heading(title, 1), *summary(_sentences(benchmark, tables))]
+    parts: list[Block] = [Heading(title, 1), *summary_blocks(_sentences(benchmark, tables))]
     for referenced, ordered in tables.items():
         if ordered:
-            parts += [heading(ranking.tracks[referenced]), _figure(ordered), *_table(ordered, benchmark.parts)]
+            parts += [Heading(ranking.tracks[referenced]), _figure(ordered), *_table(ordered, benchmark.parts)]
     path = folder / BOARD
-    write_file(path, page(title, parts))
+    write_page(path, Page(title, parts))
     return path
 
 
@@ -200,20 +211,20 @@ def _holds_chance(entry: BoardEntry, part: str) -> bool:
     return not (found.low > 0.5 or found.high < 0.5)
 
 
-def _figure(ordered: Sequence[BoardEntry]) -> str:
-    """Return the means as a figure; nothing without matplotlib."""
+def _figure(ordered: Sequence[BoardEntry]) -> FigureGrid:
+    """Return the means as a figure; empty without matplotlib."""
     if missing_packages("matplotlib"):
-        return ""
+        return FigureGrid(())
     whole = [entry for entry in ordered if len(entry.every) == len(ordered[0].every)]
     task, measure = ordered[0].ranking.task.name, ordered[0].ranking.measure
     chance = float(np.mean(list(ordered[0].chance.values())))
     mean = "mean of the parts"
     rows = [ScoreRow(task, measure.name, mean, one.name, one.score(MEAN), chance, None, measure.falls) for one in whole]
     caption = f"Mean {ordered[0].ranking.name} with 95 % limits; dotted: chance."
-    return figure_grid([figure_block(png_bytes(score_figure(rows)), caption)])
+    return FigureGrid([FigureBlock(png_bytes(score_figure(rows)), caption)])
 
 
-def _table(ordered: Sequence[BoardEntry], parts: Sequence[str]) -> list[str]:
+def _table(ordered: Sequence[BoardEntry], parts: Sequence[str]) -> list[Block]:
     columns = [MEAN, *parts]
     leader = ordered[0]
     rows, apart = [], []
@@ -225,9 +236,9 @@ def _table(ordered: Sequence[BoardEntry], parts: Sequence[str]) -> list[str]:
         apart.append([Cell(entry.name), *pairs])
     behind = f"Entry minus the first, {leader.name}, paired on the same resampled gearboxes."
     return [
-        table(["Entry", *columns], rows, caption=_caption(leader.ranking), sortable=True),
-        table(["Entry", *columns], apart[1:], caption=behind, sortable=True) if apart[1:] else "",
-        paragraph("A difference whose limits exclude 0 is one that these gearboxes can tell."),
+        TableBlock(["Entry", *columns], rows, caption=_caption(leader.ranking), sortable=True),
+        TableBlock(["Entry", *columns], apart[1:], caption=behind, sortable=True),
+        Paragraph("A difference whose limits exclude 0 is one that these gearboxes can tell."),
     ]
 
 

@@ -27,11 +27,20 @@ from diagnostics.calibration.likeness import (
     simulated_blocks,
 )
 from diagnostics.calibration.source_library import at_recordings
-from diagnostics.page import html
-from diagnostics.page.html import Cell
+from diagnostics.page.blocks import (
+    Block,
+    Cell,
+    FigureBlock,
+    FigureGrid,
+    Heading,
+    Page,
+    Paragraph,
+    TableBlock,
+    summary_blocks,
+)
 from diagnostics.page.style import FAULT_COLOURS, GEAR_COLOUR, HEALTHY_COLOUR, new_figure, png_bytes, styled
+from diagnostics.page.template import write_page
 from diagnostics.page.wording import counted, decimal, percent
-from siggen.file_writing import write_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -83,7 +92,7 @@ def write_calibration_page(
     """Write the page into a folder, with sentences first; return it."""
     with styled():
         figures = [
-            html.figure_block(png_bytes(figure), caption.format(channel.name))
+            FigureBlock(png_bytes(figure), caption.format(channel.name))
             for number, channel in enumerate(found.channels)
             for figure, caption in (
                 (_spectra(found, real, before, after, number), SPECTRA),
@@ -91,26 +100,26 @@ def write_calibration_page(
             )
         ]
     parts = [
-        html.heading(f"Calibration of {found.rig.file.stem}", 1),
-        *html.summary(sentences),
+        Heading(f"Calibration of {found.rig.file.stem}", 1),
+        *summary_blocks(sentences),
         _likeness_table(found, before, after),
-        html.figure_grid(figures),
-        html.paragraph(
+        FigureGrid(figures),
+        Paragraph(
             "Recordings and simulated records over each other, once a set is generated: `siggen-diagnostics explore "
             f"RECORDING... --config {found.rig.file.name} --beside SET`."
         ),
-        html.heading("What gives the set away"),
+        Heading("What gives the set away"),
         *_feature_parts(before, after),
-        html.heading("Lines, floors, modulation and tails"),
+        Heading("Lines, floors, modulation and tails"),
         _level_table(real, before, after),
-        html.heading("What was fitted"),
-        html.paragraph(stage_sentence(found)),
+        Heading("What was fitted"),
+        Paragraph(stage_sentence(found)),
         _fitted_table(found),
-        html.heading("What recordings do not tell"),
-        *(html.paragraph(f"{text[:1].upper()}{text[1:]}.") for text in not_identified(found)),
+        Heading("What recordings do not tell"),
+        *(Paragraph(f"{text[:1].upper()}{text[1:]}.") for text in not_identified(found)),
     ]
     path = folder / PAGE
-    write_file(path, html.page(f"Calibration of {found.rig.file.stem}", parts))
+    write_page(path, Page(f"Calibration of {found.rig.file.stem}", parts))
     return path
 
 
@@ -131,19 +140,17 @@ def _sentences(before: Likeness, after: Likeness, found: Calibration, held_out: 
     return [first, judged, wide, "Whether a detector gains by it is another question: see the control in the docs."]
 
 
-def _likeness_table(found: Calibration, before: Likeness, after: Likeness) -> str:
+def _likeness_table(found: Calibration, before: Likeness, after: Likeness) -> TableBlock:
     rows = [
         [Cell(channel.name), _number(before.distance_db[k]), _number(after.distance_db[k])]
         for k, channel in enumerate(found.channels)
     ]
-    return html.table(("Channel", "Before [dB]", "After [dB]"), rows, caption="Distance of median spectra.")
+    return TableBlock(("Channel", "Before [dB]", "After [dB]"), rows, caption="Distance of median spectra.")
 
 
-def _feature_parts(before: Likeness, after: Likeness) -> list[str]:
+def _feature_parts(before: Likeness, after: Likeness) -> list[Block]:
     if before.features is None or after.features is None:
-        return [
-            html.paragraph("Recordings or gearboxes are shorter than a second, or sampled below 9.6 kHz: not judged.")
-        ]
+        return [Paragraph("Recordings or gearboxes are shorter than a second, or sampled below 9.6 kHz: not judged.")]
     earlier = {gap.name: gap for gap in before.features.gaps}
     rows = [
         [Cell(gap.name), *(_number(v) for v in (earlier[gap.name].auc, gap.auc, gap.measured, gap.synthetic))]
@@ -156,22 +163,22 @@ def _feature_parts(before: Likeness, after: Likeness) -> list[str]:
         f"{percent(before.features.inside)} of the rig's."
     )
     head = ("Feature", "AUC before", "AUC after", "Recordings", "Calibrated")
-    return [html.paragraph(told), html.table(head, rows, caption="The most telling after calibration.", sortable=True)]
+    return [Paragraph(told), TableBlock(head, rows, caption="The most telling after calibration.", sortable=True)]
 
 
-def _level_table(real: Sample, before: Likeness, after: Likeness) -> str:
+def _level_table(real: Sample, before: Likeness, after: Likeness) -> TableBlock:
     rows = []
     for k, name in enumerate(LEVELS):
         columns = [sample.levels[:, :, k] for sample in (real, before.sample, after.sample)]
         if np.isfinite(columns[0]).any():
             rows.append([Cell(TITLES.get(name, name)), *(_spread(values) for values in columns)])
     head = ("Quantity", "Recordings", "Before", "After")
-    return html.table(
+    return TableBlock(
         head, rows, caption="Median [5 %, 95 %] over records and channels; dB re the strongest mesh line."
     )
 
 
-def _fitted_table(found: Calibration) -> str:
+def _fitted_table(found: Calibration) -> TableBlock:
     rows = []
     for channel in found.channels:
         noise = channel.noise
@@ -197,7 +204,7 @@ def _fitted_table(found: Calibration) -> str:
     caption = (
         f"Fitted numbers; {TOO_FEW}." if few else "Fitted numbers with limits of 90 % from leaving recordings out."
     )
-    return html.table(("Channel", "Quantity", "Value", "Low", "High"), rows, caption=caption, tall=True)
+    return TableBlock(("Channel", "Quantity", "Value", "Low", "High"), rows, caption=caption, tall=True)
 
 
 def _spectra(found: Calibration, real: Sample, before: Likeness, after: Likeness, channel: int) -> Figure:

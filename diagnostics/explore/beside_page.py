@@ -20,11 +20,11 @@ from diagnostics.explore.payload import PageSource, RecordList, packed_column, u
 from diagnostics.explore.set_page import LookOptions, set_name
 from diagnostics.explore.set_source import chosen_records, missing_parts, set_source
 from diagnostics.indicators.table import record_table
+from diagnostics.page.template import write_page
 from diagnostics.records.recording import Recording
 from diagnostics.records.state_classes import HEALTHY
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
-from siggen.file_writing import write_file
 
 RECORDING, SIMULATED = "recording", "simulated"
 
@@ -212,7 +212,7 @@ def write_beside_page(
     simulated = set_source(dataset, table, kept)
     said = RecordList(COLUMNS, FILTERS, _missing(shown, measured, simulated))
     look = look_of(beside_source(measured, simulated), said, stage, full=chosen.full)
-    write_file(path, look_page(f"Recordings of {name} beside {set_name(dataset)}", look))
+    write_page(path, look_page(f"Recordings of {name} beside {set_name(dataset)}", look))
     return path
 
 

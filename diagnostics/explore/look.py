@@ -8,7 +8,7 @@ from typing import Any
 
 from diagnostics.base.progress import Stage
 from diagnostics.explore.payload import PageSource, RecordList, page_axes, page_details, page_head
-from diagnostics.page import html
+from diagnostics.page.blocks import Heading, Page, Paragraph, RecordsPlace
 from diagnostics.page.live import Live
 from diagnostics.page.wording import counted
 
@@ -27,14 +27,11 @@ class Look:
 
     Attributes
     ----------
-    block : str
-        Its place in the document.
     live : Live
         What draws it.
     source : PageSource
     """
 
-    block: str
     live: Live
     source: PageSource
 
@@ -59,17 +56,17 @@ def look_of(source: PageSource, shown: RecordList, stage: Stage, *, full: bool =
         gearboxes = sorted({int(source.labels["specimen_id"][row]) for row in source.kept})
         data |= {f"look-life-{gearbox}": source.life(gearbox) for gearbox in gearboxes}
     live = Live(_files(STYLES), _files(SCRIPTS), data)
-    return Look((FOLDER / "look.html").read_text(encoding="utf-8"), live, source)
+    return Look(live, source)
 
 
-def look_page(title: str, look: Look) -> str:
+def look_page(title: str, look: Look) -> Page:
     """Return a page of nothing but records."""
     records = int(look.source.labels["record_id"].size)
     noun = "recording" if look.source.measured else "record"
     held = "all signals" if look.source.kept.size == records else f"signals of {look.source.kept.size}"
     said = f"{counted(records, noun)}, {counted(len(look.source.channels), 'channel')}, {held}."
     how = "Choose by any column, open a record in the table or by a point. Drag over a chart to zoom."
-    return html.page(title, [html.heading(title, 1), html.paragraph(f"{said} {how}"), look.block], look.live)
+    return Page(title, [Heading(title, 1), Paragraph(f"{said} {how}"), RecordsPlace()], look.live)
 
 
 def _files(names: tuple[str, ...]) -> str:

@@ -16,11 +16,11 @@ from diagnostics.explore.look import look_of, look_page
 from diagnostics.explore.payload import PageSource, RecordList, packed_indicators
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.machine.recording_indicators import RecordingIndicators
+from diagnostics.page.template import write_page
 from diagnostics.records.gear_train import gear_names, in_column
 from diagnostics.records.recording import Recording
 from diagnostics.records.state_classes import HEALTHY
 from siggen.errors import UsageError
-from siggen.file_writing import write_file
 
 REFERENCE, UNKNOWN = "healthy reference", "not judged"
 
@@ -157,7 +157,7 @@ def write_recordings_page(
     """
     missing = missing_sentences(sum(one.healthy for one in shown))
     look = look_of(recordings_source(shown), RecordList(COLUMNS, FILTERS, missing), stage, full=full)
-    write_file(path, look_page(f"Recordings of {name}", look))
+    write_page(path, look_page(f"Recordings of {name}", look))
     return path
 
 

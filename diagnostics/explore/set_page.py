@@ -17,13 +17,13 @@ from diagnostics.explore.payload import PageSource, RecordList
 from diagnostics.explore.set_source import chosen_records, missing_parts, set_source
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import RecordTable, record_table
+from diagnostics.page.template import write_page
 from diagnostics.prediction.released_model import ReleasedModel
 from diagnostics.records.record_classes import set_classes
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.training.splits import TEST
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
-from siggen.file_writing import write_file
 
 RIGHT, WRONG = "rightly", "wrongly"
 SEEN, UNSEEN = "seen in training", "no"
@@ -210,7 +210,7 @@ def write_set_page(
 ) -> Path:
     """Write the records of a set as a page of its own and return its path; parameters and errors as of `set_look`."""
     look = set_look(dataset, options or LookOptions(), stage, lives_of)
-    write_file(path, look_page(f"Records of {set_name(dataset)}", look))
+    write_page(path, look_page(f"Records of {set_name(dataset)}", look))
     return path
 
 

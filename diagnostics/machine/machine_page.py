@@ -10,10 +10,20 @@ import numpy as np
 
 from diagnostics.machine.check import CHANGED, UNCHANGED, Check, PastCheck, rate_sentence
 from diagnostics.machine.machine import Machine
-from diagnostics.page import html
+from diagnostics.page.blocks import (
+    Cell,
+    FigureBlock,
+    FigureGrid,
+    Heading,
+    Page,
+    Paragraph,
+    TableBlock,
+    note_blocks,
+    summary_blocks,
+)
 from diagnostics.page.style import FAULT_COLOURS, HEALTHY_COLOUR, new_figure, png_bytes, styled
+from diagnostics.page.template import write_page
 from diagnostics.page.wording import capitalised
-from siggen.file_writing import write_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,28 +41,25 @@ def write_machine_page(machine: Machine, folder: Path, checks: Sequence[Check], 
     with styled():
         figure = png_bytes(_trend(history))
     parts = [
-        html.heading(f"Machine {folder.name}: {_headline(checks)}", 1),
-        *html.summary(
+        Heading(f"Machine {folder.name}: {_headline(checks)}", 1),
+        *summary_blocks(
             [_headline_sentence(checks), NO_STATE, rate_sentence(_used(machine, checks), machine.false_alarms)]
         ),
-        html.figure_grid([html.figure_block(figure, TREND)]),
-        html.table(
+        FigureGrid([FigureBlock(figure, TREND)]),
+        TableBlock(
             ("Recording", "Verdict", "Reason", "Speed [Hz]"),
-            [
-                [html.Cell(c.recording), html.Cell(c.verdict), html.Cell(c.reason), html.Cell(f"{c.speed_hz:.4g}")]
-                for c in checks
-            ],
+            [[Cell(c.recording), Cell(c.verdict), Cell(c.reason), Cell(f"{c.speed_hz:.4g}")] for c in checks],
             caption="Newest checks.",
             text=True,
         ),
-        html.paragraph(_look(folder, checks)),
+        Paragraph(_look(folder, checks)),
         *(_moved_table(check) for check in checks if check.moved),
-        html.heading("References"),
-        *html.notes(machine.doubts),
-        html.table(
+        Heading("References"),
+        *note_blocks(machine.doubts),
+        TableBlock(
             ("Recording", "Speed [Hz]", "Load"),
             [
-                [html.Cell(name), html.Cell(f"{speed:.4g}"), html.Cell("-" if np.isnan(load) else f"{load:g}")]
+                [Cell(name), Cell(f"{speed:.4g}"), Cell("-" if np.isnan(load) else f"{load:g}")]
                 for name, speed, load in zip(machine.references, machine.speed_hz, machine.load, strict=True)
             ],
             caption="Healthy recordings that everything is compared with.",
@@ -60,7 +67,7 @@ def write_machine_page(machine: Machine, folder: Path, checks: Sequence[Check], 
         ),
     ]
     page = folder / PAGE
-    write_file(page, html.page(f"Machine {folder.name}", parts))
+    write_page(page, Page(f"Machine {folder.name}", parts))
     return page
 
 
@@ -89,18 +96,18 @@ def _used(machine: Machine, checks: Sequence[Check]) -> int:
     return min((check.used for check in checks if check.score is not None), default=len(machine.references))
 
 
-def _moved_table(check: Check) -> str:
+def _moved_table(check: Check) -> TableBlock:
     rows = [
         [
-            html.Cell(moved.title, moved.indicator),
-            html.Cell(moved.channel),
-            html.Cell(f"{moved.factor:.3g}", value=moved.factor),
-            html.Cell(f"{moved.spreads:+.1f}", value=moved.spreads),
+            Cell(moved.title, moved.indicator),
+            Cell(moved.channel),
+            Cell(f"{moved.factor:.3g}", value=moved.factor),
+            Cell(f"{moved.spreads:+.1f}", value=moved.spreads),
         ]
         for moved in check.moved
     ]
     caption = f"{check.recording} ({check.verdict}): indicators farthest from the healthy recordings."
-    return html.table(("Indicator", "Channel", "Factor", "Spreads"), rows, caption=caption, sortable=True)
+    return TableBlock(("Indicator", "Channel", "Factor", "Spreads"), rows, caption=caption, sortable=True)
 
 
 def _trend(history: Sequence[PastCheck]) -> Figure:

@@ -19,9 +19,10 @@ import siggen
 from diagnostics.indicators.record import record_values
 from diagnostics.indicators.registry import indicator_columns
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.page import html
 from diagnostics.page.angle_figure import ANGLE_CAPTION, angle_figure
+from diagnostics.page.blocks import Block, Cell, FigureBlock, FigureGrid, Heading, Page, TableBlock, note_blocks
 from diagnostics.page.style import png_bytes, styled
+from diagnostics.page.template import write_page
 from diagnostics.prediction.prediction_page import sideband_figure
 from diagnostics.recordings.level_alike import level_note
 from diagnostics.recordings.measured_recording import MeasuredRecording, read_recording
@@ -32,7 +33,6 @@ from diagnostics.signal.order_domain import SAMPLES_PER_TOOTH, angle_grid, resam
 from diagnostics.signal.spectrum import OrderLines, noise_density, order_lines
 from siggen.columns.drivetrain import GearTrain
 from siggen.errors import UsageError
-from siggen.file_writing import write_file
 
 TABLE, PAGE = "indicators.csv", "indicators.html"
 
@@ -48,11 +48,11 @@ def write_recordings(found: Sequence[RecordingIndicators], folder: Path) -> Path
     rows = recording_rows(found)
     columns = list(dict.fromkeys(name for row in rows for name in row))
     siggen.write_csv(pa.table({name: [row.get(name) for row in rows] for name in columns}), folder / TABLE)
-    parts = [html.heading("Indicators of recordings", 1), _overview(found)]
+    parts: list[Block] = [Heading("Indicators of recordings", 1), _overview(found)]
     for one in found:
         parts += _section(one)
     page = folder / PAGE
-    write_file(page, html.page("Indicators of recordings", parts))
+    write_page(page, Page("Indicators of recordings", parts))
     return page
 
 
@@ -67,49 +67,49 @@ def _row(found: RecordingIndicators, channel: str) -> dict[str, Any]:
     return {"recording": found.name, "channel": channel, **known, **values}
 
 
-def _overview(found: Sequence[RecordingIndicators]) -> str:
+def _overview(found: Sequence[RecordingIndicators]) -> TableBlock:
     rows = [
         [
-            html.Cell(one.name),
-            html.Cell(f"{one.pulses.speed_hz:.4f}"),
-            html.Cell(f"{one.mesh_hz:.2f}"),
-            html.Cell(f"{one.revolutions[0]} and {one.revolutions[1]}"),
-            html.Cell(one.pulses.origin),
-            html.Cell(f"{one.recording.duration_s:.3g}"),
+            Cell(one.name),
+            Cell(f"{one.pulses.speed_hz:.4f}"),
+            Cell(f"{one.mesh_hz:.2f}"),
+            Cell(f"{one.revolutions[0]} and {one.revolutions[1]}"),
+            Cell(one.pulses.origin),
+            Cell(f"{one.recording.duration_s:.3g}"),
         ]
         for one in found
     ]
     head = ("Recording", "First shaft [Hz]", "Mesh [Hz]", "Turns averaged", "Angle from", "Length [s]")
-    return html.table(head, rows, caption="What was found in each recording.", text=True)
+    return TableBlock(head, rows, caption="What was found in each recording.", text=True)
 
 
-def _section(found: RecordingIndicators) -> list[str]:
-    blocks = []
+def _section(found: RecordingIndicators) -> list[Block]:
+    blocks: list[Block] = []
     if (angle := found.pulses.angle) is not None:
         with styled():
-            blocks.append(html.figure_block(png_bytes(angle_figure(angle)), ANGLE_CAPTION))
+            blocks.append(FigureBlock(png_bytes(angle_figure(angle)), ANGLE_CAPTION))
     for channel in found.recording.channels if found.pulses.outcome == "angle" else ():
         with styled():
             png = png_bytes(sideband_figure(found.recording, found.mesh, found.pulses, channel))
-        blocks.append(html.figure_block(png, f"Order spectrum (Hann) around mesh harmonics: {channel}."))
+        blocks.append(FigureBlock(png, f"Order spectrum (Hann) around mesh harmonics: {channel}."))
     names, values = indicator_matrix(found)
     known = indicator_columns(IndicatorSettings(), gear_names(found.train))
     rows = [
-        [html.Cell(known[name].title, small=name), *(_cell(value) for value in of_channels)]
+        [Cell(known[name].title, small=name), *(_cell(value) for value in of_channels)]
         for name, of_channels in zip(names, values.tolist(), strict=True)
     ]
     head = ("Indicator", *found.recording.channels)
     caption = f"Indicators of the whole recording. {found.recording.levels_sentence}"
     return [
-        html.heading(found.name),
-        html.figure_grid(blocks),
-        html.table(head, rows, caption=caption, sortable=True, tall=True),
-        *html.notes([found.note] if found.note else []),
+        Heading(found.name),
+        FigureGrid(blocks),
+        TableBlock(head, rows, caption=caption, sortable=True, tall=True),
+        *note_blocks([found.note] if found.note else []),
     ]
 
 
-def _cell(value: float) -> html.Cell:
-    return html.Cell("undefined" if np.isnan(value) else f"{value:.4g}", value=value)
+def _cell(value: float) -> Cell:
+    return Cell("undefined" if np.isnan(value) else f"{value:.4g}", value=value)
 
 
 def check_mesh_lines(recording: MeasuredRecording, pulses: ShaftPulses, train: GearTrain) -> None:

@@ -29,13 +29,6 @@ class Live:
     script: str = ""
     data: Mapping[str, Any] = field(default_factory=dict)
 
-    def data_elements(self) -> str:
-        """Return the elements with the data, of which nothing can run."""
-        return "".join(
-            f'<script type="application/json" id="{name}">{script_json(value)}</script>\n'
-            for name, value in self.data.items()
-        )
-
 
 STILL = Live()
 """A page that nothing is drawn on."""

@@ -15,12 +15,9 @@ import numpy as np
 
 from diagnostics.judging.judgement import BOOSTING, TITLES
 from diagnostics.judging.of_split import Training
-from diagnostics.page.html import Cell, inline, link, table
+from diagnostics.page.blocks import Cell, TableBlock
 from diagnostics.page.wording import counted
 from diagnostics.statistics.evaluation import Interval
-
-MOST_LINKS = 20
-"""Below a figure; more would be longer than its caption."""
 
 
 def records_link(**chosen: object) -> str:
@@ -39,14 +36,6 @@ def linked_cell(cell: Cell, **chosen: object) -> Cell:
     return replace(cell, link=records_link(**chosen))
 
 
-def records_line(title: str, links: Mapping[str, str]) -> str:
-    """Return a line below a figure that leads to records, by what each link is called; nothing without links."""
-    if not links:
-        return ""
-    said = ", ".join(link(name, target) for name, target in list(links.items())[:MOST_LINKS])
-    return f'<p class="behind">{inline(title)}: {said}</p>'
-
-
 def state_links(states: Iterable[str]) -> dict[str, str]:
     """Return where the records of every state are, by its name."""
     return {name: records_link(state=name) for name in states}
@@ -57,7 +46,7 @@ def indicator_links(titles: Mapping[str, str]) -> dict[str, str]:
     return {title: records_link(indicator=column) for column, title in titles.items()}
 
 
-def set_table(labels: dict[str, np.ndarray], classes: tuple[str, ...]) -> str:
+def set_table(labels: dict[str, np.ndarray], classes: tuple[str, ...]) -> TableBlock:
     """Return records by state and split, and specimens by split; counts lead to their records."""
     splits = [name for name in ("train", "validation", "test") if (labels["split"] == name).any()]
     rows = [
@@ -74,10 +63,10 @@ def set_table(labels: dict[str, np.ndarray], classes: tuple[str, ...]) -> str:
     ]
     count = [np.unique(labels["specimen_id"][labels["split"] == name]).size for name in splits]
     rows.append([Cell("specimens (gearboxes)"), *(Cell(str(number)) for number in count)])
-    return table(["State", *splits], rows, caption="Records by state and split, and gearboxes by split.")
+    return TableBlock(["State", *splits], rows, caption="Records by state and split, and gearboxes by split.")
 
 
-def score_table(training: Training) -> str:
+def score_table(training: Training) -> TableBlock:
     """Return accuracy and macro-AUROC of every classifier with intervals, and its permutation control."""
     rows = []
     for judged in training.judged:
@@ -96,10 +85,10 @@ def score_table(training: Training) -> str:
         "training on permuted labels."
     )
     head = ["Classifier", "Accuracy [-]", "Macro-AUROC [-]", "Permuted labels [-]"]
-    return table(head, rows, caption=caption, sortable=True)
+    return TableBlock(head, rows, caption=caption, sortable=True)
 
 
-def calibration_table(training: Training) -> str:
+def calibration_table(training: Training) -> TableBlock:
     """Return what the probabilities of every classifier are worth without and with its temperature."""
     rows = [
         [
@@ -123,7 +112,7 @@ def calibration_table(training: Training) -> str:
         f"score is 0; equal probabilities for all classes give {1.0 - 1.0 / classes:.2f}. Chance alone makes the "
         "expected calibration error positive. The last column is its value if these probabilities (with T) were true."
     )
-    return table(head, rows, caption=caption, sortable=True)
+    return TableBlock(head, rows, caption=caption, sortable=True)
 
 
 def _details(name: str, details: dict[str, Any]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 
 from diagnostics.statistics.evaluation import Interval
@@ -64,3 +65,9 @@ def percent_limits(found: Interval) -> str:
     if math.isnan(found.low):
         return "no interval from one specimen"
     return f"{percent(found.low)} to {percent(found.high)}"
+
+
+def minus(text: str) -> str:
+    """Return text with a true minus sign before numbers, and none before a zero."""
+    plain = re.sub(r"(?<![\w.])[-+](0(?:\.0+)?)(?![\d.])", r"\1", text)
+    return re.sub(r"(?<![\w.,)])-(?=\d)", "\N{MINUS SIGN}", plain)

@@ -18,8 +18,19 @@ import numpy as np
 
 import siggen
 from diagnostics.base.extras import require_packages
-from diagnostics.page import html
+from diagnostics.page.blocks import (
+    Block,
+    Cell,
+    FigureBlock,
+    FigureGrid,
+    Heading,
+    Page,
+    TableBlock,
+    note_blocks,
+    summary_blocks,
+)
 from diagnostics.page.style import draw_marks, mark_handles, new_figure, order_words, png_bytes, sideband_places, styled
+from diagnostics.page.template import write_page
 from diagnostics.page.wording import capitalised, counted, joined, percent
 from diagnostics.prediction.known_reasons import OwnState
 from diagnostics.prediction.model_facts import ModelFacts
@@ -251,39 +262,39 @@ def write_prediction(found: Prediction, facts: ModelFacts, folder: Path) -> Path
     content = prediction_facts(found, facts)
     text = json.dumps(content, indent=1, allow_nan=False) + "\n"
     write_file(folder / "prediction.json", text)
-    blocks = []
+    blocks: list[Block] = []
     for channel in found.recording.channels:
         with styled():
             png = png_bytes(sideband_figure(found.recording, meshes_of(found.train)[0], found.pulses, channel))
         write_file(folder / f"sidebands_{channel}.png", png)
-        blocks.append(html.figure_block(png, f"Order spectrum (Hann) around mesh harmonics: {channel}."))
+        blocks.append(FigureBlock(png, f"Order spectrum (Hann) around mesh harmonics: {channel}."))
     page = folder / "prediction.html"
-    write_file(page, _page(found, facts, content["indicators"], blocks))
+    write_page(page, _page(found, facts, content["indicators"], blocks))
     return page
 
 
-def _page(found: Prediction, facts: ModelFacts, indicators: dict[str, float | None], blocks: list[str]) -> str:
-    rows = [[html.Cell(label), html.Cell(text)] for label, text in prediction_rows(found)]
+def _page(found: Prediction, facts: ModelFacts, indicators: dict[str, float | None], blocks: list[Block]) -> Page:
+    rows = [[Cell(label), Cell(text)] for label, text in prediction_rows(found)]
     values = [
-        [html.Cell(name), html.Cell("undefined" if value is None else f"{value:.4g}", value=value)]
+        [Cell(name), Cell("undefined" if value is None else f"{value:.4g}", value=value)]
         for name, value in list(indicators.items())[:INDICATORS_SHOWN]
     ]
     name = found.recording.path.name
     parts = [
-        html.heading(f"{name}: {found.state}", 1),
-        *html.summary([MEANING, *prediction_summary(found)]),
-        html.table(("Question", "Answer"), rows, caption="What the models say about this recording.", text=True),
-        html.heading("Sidebands"),
-        html.figure_grid(blocks),
-        html.heading("Indicators"),
-        html.table(
+        Heading(f"{name}: {found.state}", 1),
+        *summary_blocks([MEANING, *prediction_summary(found)]),
+        TableBlock(("Question", "Answer"), rows, caption="What the models say about this recording.", text=True),
+        Heading("Sidebands"),
+        FigureGrid(blocks),
+        Heading("Indicators"),
+        TableBlock(
             ("Indicator and channel", "Median"),
             values,
             caption=f"Median of each indicator over the pieces of the recording. {found.recording.levels_sentence}",
             sortable=True,
             tall=True,
         ),
-        html.heading("Notes"),
-        *html.notes([model_provenance(facts)]),
+        Heading("Notes"),
+        *note_blocks([model_provenance(facts)]),
     ]
-    return html.page(f"Prediction for {name}", parts)
+    return Page(f"Prediction for {name}", parts)

@@ -16,7 +16,7 @@ from diagnostics.judging.alarms import Detectors, FoundSize, JudgedDetector
 from diagnostics.judging.judgement import RMS_ALONE, TITLES, Judged
 from diagnostics.judging.nested_folds import KNOWN_ACCEPTED, Nested, Stranger
 from diagnostics.judging.of_split import Referenced, Training
-from diagnostics.page.html import Cell, paragraph, table
+from diagnostics.page.blocks import Block, Cell, Paragraph, TableBlock
 from diagnostics.page.style import new_figure
 from diagnostics.page.tables import interval_cell, linked_cell, records_link
 from diagnostics.page.wording import (
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 def confusion_table(
     scores: IntervalScores, title: str, records: str = "test records", kind: str = STATE, *, linked: bool = False
-) -> str:
+) -> TableBlock:
     """Return the confusion matrix of one classifier.
 
     Parameters
@@ -69,7 +69,7 @@ def confusion_table(
         f"{capitalised(title)}: true {kind} in rows, named {kind} in columns; {records}, and their "
         f"share of the true {kind}.{' A count leads to its records.' if linked else ''}"
     )
-    return table([f"True {kind}", *classes], rows, caption=caption)
+    return TableBlock([f"True {kind}", *classes], rows, caption=caption)
 
 
 def _count(true: str, named: str, count: int, share: float, *, linked: bool) -> Cell:
@@ -130,7 +130,7 @@ MOST_NAMES = 3
 """Names shown of what a class that training lacked is called."""
 
 
-def nested_blocks(found: Nested | None, kind: str = STATE) -> list[str]:
+def nested_blocks(found: Nested | None, kind: str = STATE) -> list[Block]:
     """Return the blocks; nothing where the set has too few gearboxes for folds."""
     if found is None:
         return []
@@ -141,10 +141,10 @@ def nested_blocks(found: Nested | None, kind: str = STATE) -> list[str]:
         f"{decimal(area.high)})."
     )
     matrix = confusion_table(scores, "Nested folds over all gearboxes", "records of all gearboxes", kind=kind)
-    return [paragraph(sentence), matrix, *([_strangers(found.strangers)] if found.strangers else [])]
+    return [Paragraph(sentence), matrix, *([_strangers(found.strangers)] if found.strangers else [])]
 
 
-def _strangers(found: tuple[Stranger, ...]) -> str:
+def _strangers(found: tuple[Stranger, ...]) -> TableBlock:
     rows = [
         [
             Cell(one.name),
@@ -159,10 +159,12 @@ def _strangers(found: tuple[Stranger, ...]) -> str:
         f"probability is below what {KNOWN_ACCEPTED:.0%} of known records exceed. The last column has the names most "
         "often given instead."
     )
-    return table(["Class that training lacks", "Records", "Called something else", "Called"], rows, caption=caption)
+    return TableBlock(
+        ["Class that training lacks", "Records", "Called something else", "Called"], rows, caption=caption
+    )
 
 
-def your_scores(scores: Scores | None) -> list[str]:
+def your_scores(scores: Scores | None) -> list[Block]:
     """Return a sentence and the table; nothing without predictions."""
     if scores is None:
         return []
@@ -186,8 +188,8 @@ def your_scores(scores: Scores | None) -> list[str]:
         "report. Differences are paired on the same resampled gearboxes, with 95 % limits."
     )
     return [
-        paragraph(text),
-        table(head, rows, caption="Scores of the tasks that the predictions answer.", sortable=True),
+        Paragraph(text),
+        TableBlock(head, rows, caption="Scores of the tasks that the predictions answer.", sortable=True),
     ]
 
 
@@ -201,13 +203,13 @@ CAPTION = (
 SHAM_CAPTION = " Sham: healthy records whose damage was drawn with nothing removed; an AUC above chance is a leak."
 
 
-def detection_blocks(training: Training) -> list[str]:
+def detection_blocks(training: Training) -> list[Block]:
     """Return the tables of detection, on the test specimens and on another set, with what they mean."""
-    blocks = [paragraph(text) for text in (*class_sentences(training), *balance_sentences(training))]
+    blocks: list[Block] = [Paragraph(text) for text in (*class_sentences(training), *balance_sentences(training))]
     shown = tuple(found for found in training.judged if found.detection)
     if not shown:
         return blocks
-    blocks += [paragraph(text) for text in gain_sentences(training)]
+    blocks += [Paragraph(text) for text in gain_sentences(training)]
     blocks.append(detection_table(shown, f"Damaged or not: {reading(training)}"))
     other = tuple(found for found in training.other if found.detection)
     if other:
@@ -267,7 +269,7 @@ def gain_sentences(training: Training) -> list[str]:
     ]
 
 
-def detection_table(found: tuple[Judged, ...], caption: str) -> str:
+def detection_table(found: tuple[Judged, ...], caption: str) -> TableBlock:
     """Return AUROC of healthy against all damaged records, and against every state, by classifier."""
     states = list(dict.fromkeys(name for judged in found if judged.detection for name in judged.detection.by_class))
     rows = [
@@ -279,17 +281,15 @@ def detection_table(found: tuple[Judged, ...], caption: str) -> str:
         for judged in found
         if judged.detection
     ]
-    return table(["Classifier", "all damage", *states], rows, caption=caption, sortable=True)
+    return TableBlock(["Classifier", "all damage", *states], rows, caption=caption, sortable=True)
 
 
-def detector_table(found: Detectors) -> str:
+def detector_table(found: Detectors) -> TableBlock:
     """Return all detectors, those beside a healthy record below those without; nothing without any.
 
     AUC and alarms of a state lead to its records.
     """
     every = list({id(one): one for side in (found.alone, found.referenced) for one in side.values()}.values())
-    if not every:
-        return ""
     states = list(dict.fromkeys(name for detector in every for name in detector.states))
     kinds = list(dict.fromkeys(state.kind for detector in every for state in detector.states.values()))
     shams = any(one.sham for one in every)
@@ -302,7 +302,7 @@ def detector_table(found: Detectors) -> str:
         *(f"Nine of ten, {kind} [mm²]" for kind in kinds),
     ]
     rows = [_row(detector, states, kinds, shams=shams) for detector in every]
-    return table(head, rows, caption=CAPTION + (SHAM_CAPTION if shams else ""), sortable=True)
+    return TableBlock(head, rows, caption=CAPTION + (SHAM_CAPTION if shams else ""), sortable=True)
 
 
 def _row(detector: JudgedDetector, states: list[str], kinds: list[str], *, shams: bool) -> list[Cell]:
@@ -364,7 +364,7 @@ FEWEST_SPECIMENS = 6
 """Test specimens from which an interval may decide: with five even a sign test cannot fall below 0.05 (2/32)."""
 
 
-def comparison_table(training: Training) -> str:
+def comparison_table(training: Training) -> TableBlock:
     """Return the paired differences of classifiers, and whether the interval of each, by itself, excludes zero."""
     specimens = training.judged[0].scores.specimens
     rows = [
@@ -382,7 +382,7 @@ def comparison_table(training: Training) -> str:
         "0, the set does not show which classifier is better. There is no correction for many pairs: about one pair in "
         f"twenty excludes 0 even where no pair differs. The last column needs {FEWEST_SPECIMENS} test gearboxes."
     )
-    return table(head, rows, caption=caption, sortable=True)
+    return TableBlock(head, rows, caption=caption, sortable=True)
 
 
 def verdict(difference: Interval, specimens: int) -> str:
@@ -392,7 +392,7 @@ def verdict(difference: Interval, specimens: int) -> str:
     return "yes" if difference.low > 0.0 or difference.high < 0.0 else "no"
 
 
-def other_set_table(training: Training) -> str:
+def other_set_table(training: Training) -> TableBlock:
     """Return the scores on another set beside those on the own test specimens."""
     own = {found.name: found for found in training.judged}
     rows = [_other_row(found, own[found.name]) for found in training.other]
@@ -402,10 +402,10 @@ def other_set_table(training: Training) -> str:
         f"Scores on the other set, {training.other_name}: {counted(there.records, 'record')} of "
         f"{counted(there.specimens, 'specimen')}. No classifier was trained on it."
     )
-    return table([*head, "Calibration error there"], rows, caption=caption, sortable=True)
+    return TableBlock([*head, "Calibration error there"], rows, caption=caption, sortable=True)
 
 
-def referenced_table(found: Referenced) -> str:
+def referenced_table(found: Referenced) -> TableBlock:
     """Return what classifiers reach alone and beside a healthy record of the same gearbox, on the same records."""
     rows = [
         [
@@ -422,10 +422,10 @@ def referenced_table(found: Referenced) -> str:
         "A healthy record is never its own reference."
     )
     head = ["Classifier", "Macro-AUROC [-]", "Accuracy [-]", "Damaged or not, AUROC [-]"]
-    return table(head, rows, caption=caption, sortable=True)
+    return TableBlock(head, rows, caption=caption, sortable=True)
 
 
-def referenced_pairs_table(found: Referenced) -> str:
+def referenced_pairs_table(found: Referenced) -> TableBlock:
     """Return the paired differences that a healthy record makes."""
     specimens = found.judged[0].scores.specimens
     rows = [
@@ -442,7 +442,7 @@ def referenced_pairs_table(found: Referenced) -> str:
         "What a healthy record of the same gearbox is worth: paired differences on the same resampled specimens, with "
         "95 % limits. The last column is of macro-AUROC."
     )
-    return table(head, rows, caption=caption, sortable=True)
+    return TableBlock(head, rows, caption=caption, sortable=True)
 
 
 def _other_row(there: Judged, here: Judged) -> list[Cell]:
@@ -450,9 +450,9 @@ def _other_row(there: Judged, here: Judged) -> list[Cell]:
     return [Cell(TITLES[there.name]), *(interval_cell(s) for s in scores), interval_cell(there.calibration.after)]
 
 
-def score_blocks(training: Training) -> list[str]:
+def score_blocks(training: Training) -> list[Block]:
     """Return what the section of scores holds below its first table."""
-    blocks = [comparison_table(training)]
+    blocks: list[Block] = [comparison_table(training)]
     if training.referenced:
         blocks += [referenced_table(training.referenced), referenced_pairs_table(training.referenced)]
     return [*blocks, other_set_table(training)] if training.other else blocks

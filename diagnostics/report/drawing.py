@@ -12,6 +12,7 @@ import siggen
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.registry import mesh_words
 from diagnostics.judging.of_split import Training
+from diagnostics.page.blocks import RecordLinks
 from diagnostics.page.provenance import without_path
 from diagnostics.page.style import (
     PASSING,
@@ -25,7 +26,7 @@ from diagnostics.page.style import (
     state_ticks,
     turn_words,
 )
-from diagnostics.page.tables import records_line, records_link, state_links
+from diagnostics.page.tables import records_link, state_links
 from diagnostics.records.gear_train import GearMesh, meshes_of
 from diagnostics.records.recording import Recording, one_recording
 from diagnostics.records.state_classes import HEALTHY
@@ -310,7 +311,7 @@ class Drawing:
     damage: dict[str, tuple[Figure, str]] = field(default_factory=dict)
     scores: dict[str, tuple[Figure, str]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
-    behind: dict[str, str] = field(default_factory=dict)
+    behind: dict[str, RecordLinks] = field(default_factory=dict)
 
     def figures(self) -> dict[str, tuple[Figure, str]]:
         """Return all figures by file name."""
@@ -342,7 +343,7 @@ def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str])
     )
     figure = waveform_figure(examples, colours)
     shown = {each.state: records_link(record=each.record_id) for each in examples.examples}
-    behind = records_line("Records", shown)
+    behind = RecordLinks("Records", shown)
     drawing.behind["waveforms"] = behind
     drawing.vibration["waveforms"] = (
         figure,
@@ -381,7 +382,7 @@ def _draw_damage(drawing: Drawing, dataset: Dataset, classes: tuple[str, ...], c
     figure = stiffness_loss_figure(losses, classes, colours)
     caption = f"Largest relative loss of mesh stiffness against healthy, from the labels: {meaning}."
     drawing.damage["stiffness_loss"] = (figure, caption)
-    drawing.behind["stiffness_loss"] = records_line("Records", state_links(classes))
+    drawing.behind["stiffness_loss"] = RecordLinks("Records", state_links(classes))
     try:
         # what siggen names is loaded when it is used: a set can be read without its physics
         gearbox = siggen.draw(siggen.load_config(dataset.config))
@@ -393,7 +394,7 @@ def _draw_damage(drawing: Drawing, dataset: Dataset, classes: tuple[str, ...], c
     caption = f"Specimen 0 in every state while the damaged teeth mesh: {next(iter(curves.values())).meaning}."
     drawing.damage["stiffness"] = (figure, caption)
     records = {"specimen 0": records_link(specimen_id=0)}
-    drawing.behind["stiffness"] = records_line("Records", records)
+    drawing.behind["stiffness"] = RecordLinks("Records", records)
 
 
 def _draw_scores(drawing: Drawing, training: Training) -> None:
@@ -401,6 +402,6 @@ def _draw_scores(drawing: Drawing, training: Training) -> None:
     caption = f"Scores on {specimens} test specimens, with 95 % intervals from resampled specimens. Dashed: chance."
     drawing.scores["scores"] = (score_figure(training), caption)
     named = {f"{said} named": records_link(split="test", named=said) for said in ("wrongly", "rightly")}
-    drawing.behind["scores"] = records_line("Test records", named)
+    drawing.behind["scores"] = RecordLinks("Test records", named)
     caption = "Permutation control: training with shuffled labels (dots) must give values around 0.5."
     drawing.scores["permuted"] = (permutation_figure(training), caption)

@@ -19,10 +19,9 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.ranking_table import IndicatorTable
 from diagnostics.indicators.registry import ALL, IndicatorColumn, column_title, indicator_columns
 from diagnostics.indicators.settings import IndicatorSettings
-from diagnostics.page import html
-from diagnostics.page.html import Cell, table
+from diagnostics.page.blocks import Block, Cell, FigureBlock, FigureGrid, Paragraph, RecordLinks, TableBlock
 from diagnostics.page.style import new_figure, state_ticks
-from diagnostics.page.tables import indicator_links, interval_cell, linked_cell, records_line
+from diagnostics.page.tables import indicator_links, interval_cell, linked_cell
 from diagnostics.page.wording import counted, limits, percent
 from diagnostics.records.channel_quantities import ShownQuantity
 from diagnostics.records.gear_train import GearNames
@@ -346,7 +345,7 @@ def _behind(cell: Cell, column: str, **chosen: object) -> Cell:
     return cell if column.startswith(OF_HISTORY) else linked_cell(cell, indicator=column, **chosen)
 
 
-def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
+def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> TableBlock:
     """Return all indicators, best between other specimens first, with the AUC of every state."""
     head = ["Indicator, channel", "Rank", "Score", *(f"AUC, {state}" for state in states), "With damage"]
     rows = [
@@ -361,10 +360,10 @@ def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> s
         for rank, r in enumerate(found, start=1)
     ]  # fmt: skip
     caption = "Ranking between different specimens: AUC against healthy with 95 % limits. The score is their mean."
-    return table(head, rows, caption=caption + BEHIND, sortable=True, tall=True)
+    return TableBlock(head, rows, caption=caption + BEHIND, sortable=True, tall=True)
 
 
-def separation_html(rows: Mapping[str, Sequence[float]], states: tuple[str, ...], gears: GearNames) -> str:
+def separation_html(rows: Mapping[str, Sequence[float]], states: tuple[str, ...], gears: GearNames) -> TableBlock:
     """Return the heat map: separation of every state in both designs, best first, empty without rows."""
     head = ["Indicator", *(f"{state}, {design}" for design in ("others", "same") for state in states)]
     cells = [
@@ -379,7 +378,7 @@ def separation_html(rows: Mapping[str, Sequence[float]], states: tuple[str, ...]
         "perfect, 0.5 (white) is chance. Others: AUC between specimens. Same: share of pairs of one specimen that move "
         f"in the direction of the indicator.{BEHIND}"
     )
-    return table(head, cells, caption=caption, sortable=True, tall=True) if cells else ""
+    return TableBlock(head, cells, caption=caption, sortable=True, tall=True)
 
 
 def _separation(value: float) -> Cell:
@@ -388,7 +387,7 @@ def _separation(value: float) -> Cell:
     return Cell(f"{value:.2f}", value=value, shade=2.0 * value - 1.0)
 
 
-def best_html(best: Mapping[str, tuple[float, str]], gears: GearNames) -> str:
+def best_html(best: Mapping[str, tuple[float, str]], gears: GearNames) -> TableBlock:
     """Return the best single indicator of every state."""
     rows = [
         [Cell(state), Cell(f"{value:.2f}", value=value), term_cell(column, gears)]
@@ -396,10 +395,10 @@ def best_html(best: Mapping[str, tuple[float, str]], gears: GearNames) -> str:
     ]
     caption = "Best single indicator of each state, between different specimens. The best of many is optimistic."
     head = ["State", "AUC [-]", "Indicator and channel"]
-    return table(head, rows, caption=caption, sortable=True, text=True) if rows else ""
+    return TableBlock(head, rows, caption=caption, sortable=True, text=True)
 
 
-def undefined_html(found: Sequence[IndicatorResult], left_out: Mapping[str, float]) -> str:
+def undefined_html(found: Sequence[IndicatorResult], left_out: Mapping[str, float]) -> TableBlock:
     """Return which indicators have no value in some records, how often, and when that is so.
 
     Parameters
@@ -420,10 +419,10 @@ def undefined_html(found: Sequence[IndicatorResult], left_out: Mapping[str, floa
             )
     head = ["Indicator and channel", "Undefined [%]", "When"]
     caption = "Indicators that are undefined in some of the records."
-    return table(head, rows, caption=caption, sortable=True, tall=True, text=True) if rows else ""
+    return TableBlock(head, rows, caption=caption, sortable=True, tall=True, text=True)
 
 
-def definition_html(held: Collection[str]) -> str:
+def definition_html(held: Collection[str]) -> TableBlock:
     """Return the definitions of the indicators that are taken of these quantities."""
     head = [
         "Column starts with",
@@ -443,7 +442,7 @@ def definition_html(held: Collection[str]) -> str:
         for d in ALL
         if any(d.is_taken_of(quantity) for quantity in held)
     ]
-    return table(head, rows, caption="Definitions of the indicators.", tall=True, text=True)
+    return TableBlock(head, rows, caption="Definitions of the indicators.", tall=True, text=True)
 
 
 CURVES_SHOWN = 6
@@ -579,36 +578,36 @@ def figures(evaluated: Evaluated, held: Mapping[str, ShownQuantity]) -> dict[str
     return {name: (figure, caption) for name, (figure, caption) in drawn.items() if figure is not None}
 
 
-def ranking_blocks(dataset: Dataset, evaluated: Evaluated) -> list[str]:
+def ranking_blocks(dataset: Dataset, evaluated: Evaluated) -> list[Block]:
     """Return what is best, and all indicators in order."""
     found, names = evaluated.found, evaluated.records.states
     gears = evaluated.table.matrix.gears
     _, *told = findings(dataset, evaluated)
     separation = separation_rows(found, names)
     return [
-        *(html.paragraph(sentence) for sentence in told),
+        *(Paragraph(sentence) for sentence in told),
         best_html(best_by_state(found, names), gears),
         ranking_html(found[:MOST_RANKED], names),
         separation_html(separation, names, gears),
-        html.paragraph(HOW_TO_READ),
+        Paragraph(HOW_TO_READ),
     ]
 
 
-def detail_blocks(evaluated: Evaluated, pictures: Mapping[str, tuple[bytes, str]]) -> list[str]:
+def detail_blocks(evaluated: Evaluated, pictures: Mapping[str, tuple[bytes, str]]) -> list[Block]:
     """Return the figures of the best indicators, and what is undefined."""
     line = _records_behind(evaluated)
     shown = [name for name in ("severity", "detection") if name in pictures]
     return [
-        html.figure_grid([html.figure_block(*pictures[name], line) for name in shown]),
-        html.paragraph(OF_THE_FILE),
+        FigureGrid([FigureBlock(*pictures[name], line) for name in shown]),
+        Paragraph(OF_THE_FILE),
         undefined_html(evaluated.found, _left_out(evaluated)),
     ]
 
 
-def _records_behind(evaluated: Evaluated) -> str:
+def _records_behind(evaluated: Evaluated) -> RecordLinks:
     """Return the line that leads from figures to their records."""
     titles = {result.column: in_words(result.column, result.gears) for result in evaluated.shown}
-    return records_line("All records by", indicator_links(titles))
+    return RecordLinks("All records by", indicator_links(titles))
 
 
 def _left_out(evaluated: Evaluated) -> dict[str, float]:

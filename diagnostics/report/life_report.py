@@ -21,10 +21,23 @@ from diagnostics.base.single_thread import single_thread
 from diagnostics.explore.look import Look
 from diagnostics.explore.set_page import Lives, LookOptions, set_look
 from diagnostics.indicators.table import RecordTable
-from diagnostics.page import html
-from diagnostics.page.html import Cell
+from diagnostics.page.blocks import (
+    Block,
+    Cell,
+    ContentsLinks,
+    FigureBlock,
+    FigureGrid,
+    Heading,
+    Opening,
+    Page,
+    Paragraph,
+    RecordsPlace,
+    TableBlock,
+    note_blocks,
+)
 from diagnostics.page.provenance import origin_sentence, provenance
 from diagnostics.page.style import WIDTH_IN, png_bytes, styled
+from diagnostics.page.template import write_page
 from diagnostics.page.wording import capitalised, counted
 from diagnostics.scoring.prediction_file import CLASSIFIER, RECORD, SPLIT, write_predictions
 from diagnostics.scoring.remaining_life import COLUMNS
@@ -292,7 +305,7 @@ def shown_gearboxes(found: Inspections) -> list[int]:
     return list(dict.fromkeys(int(order[place]) for place in (0, order.size // 2, order.size - 1)))
 
 
-def detection_table(detected: Mapping[str, FailureDetection]) -> str:
+def detection_table(detected: Mapping[str, FailureDetection]) -> TableBlock:
     """Return the table of what sees damage, and when."""
     rows = [
         [
@@ -315,12 +328,12 @@ def detection_table(detected: Mapping[str, FailureDetection]) -> str:
         f"First detection in gearboxes that failed, medians. Detected: {IN_A_ROW} inspections in a row above what "
         f"{QUIET:.0%} of other gearboxes' inspections without a pit stay below; pictures: the first that shows a pit."
     )
-    return html.table(head, rows, caption=caption)
+    return TableBlock(head, rows, caption=caption)
 
 
-def life_block(unit: UnitLife) -> str:
+def life_block(unit: UnitLife) -> FigureBlock:
     """Return the figure of a gearbox with its caption."""
-    return html.figure_block(png_bytes(life_figure(unit)), f"Gearbox {unit.specimen}. {CAPTION}")
+    return FigureBlock(png_bytes(life_figure(unit)), f"Gearbox {unit.specimen}. {CAPTION}")
 
 
 def _median(value: float) -> Cell:
@@ -414,15 +427,15 @@ def write_life_report(
     page = folder / PAGE
     first, *lives = unit_lives(dataset, found, seen, predicted, shown_gearboxes(found)).values()
     look = set_look(dataset, amount or LookOptions(), stage, lives_of)
-    parts = [
-        *(html.heading("Records"), look.block, html.heading("Remaining life")),
-        *(html.paragraph(sentence) for sentence in (*_sentences(found), _verdict(leaks))),
-        *html.notes([left_out] if left_out else []),
-        *(_errors(found, scores), _quantiles(scores), html.heading("First detection"), detection_table(detected)),
-        *(html.figure_grid([life_block(one) for one in lives]), html.heading("Leaks"), _leaks(leaks)),
+    parts: list[Block] = [
+        *(Heading("Records"), RecordsPlace(), Heading("Remaining life")),
+        *(Paragraph(sentence) for sentence in (*_sentences(found), _verdict(leaks))),
+        *note_blocks([left_out] if left_out else []),
+        *(_errors(found, scores), _quantiles(scores), Heading("First detection"), detection_table(detected)),
+        *(FigureGrid([life_block(one) for one in lives]), Heading("Leaks"), _leaks(leaks)),
     ]
-    opening = html.answer(_answer(found, scores, detected), life_block(first))
-    write_file(page, _page(dataset, seed, opening, parts, look))
+    opening = Opening(_answer(found, scores, detected), life_block(first))
+    write_page(page, _page(dataset, seed, opening, parts, look))
     return page
 
 
@@ -454,15 +467,15 @@ def _facts(found: Inspections) -> dict[str, object]:
     }
 
 
-def _page(dataset: Dataset, seed: int, opening: str, parts: Sequence[str], look: Look) -> str:
+def _page(dataset: Dataset, seed: int, opening: Opening, parts: Sequence[Block], look: Look) -> Page:
     title = f"Remaining life of {dataset.path.name}"
-    whole = [
-        html.heading(title, 1),
-        html.paragraph(f"{origin_sentence(dataset)} {RESERVATION}"),
-        *(opening, html.contents(parts), *parts),
-        html.paragraph(provenance(dataset, seed), "caption"),
+    whole: list[Block] = [
+        Heading(title, 1),
+        Paragraph(f"{origin_sentence(dataset)} {RESERVATION}"),
+        *(opening, ContentsLinks(), *parts),
+        Paragraph(provenance(dataset, seed), "caption"),
     ]
-    return html.page(title, whole, look.live)
+    return Page(title, whole, look.live)
 
 
 def _answer(
@@ -503,7 +516,7 @@ def _sentences(found: Inspections) -> list[str]:
     ]
 
 
-def _errors(found: Inspections, scores: Mapping[str, LifeScores]) -> str:
+def _errors(found: Inspections, scores: Mapping[str, LifeScores]) -> TableBlock:
     third = found.median_life_h / BINS
     bins = ("all", f"below {third:.3g} h", f"{third:.3g} to {2 * third:.3g} h", f"from {2 * third:.3g} h")
     rows = [[Cell(name), *map(_hours, (*one.rmse_h, *one.mae_h))] for name, one in scores.items()]
@@ -512,10 +525,10 @@ def _errors(found: Inspections, scores: Mapping[str, LifeScores]) -> str:
         "Error of the predicted median, of all inspections and by true remaining life, with 95 % limits from resampled "
         "gearboxes."
     )
-    return html.table(head, rows, caption=caption)
+    return TableBlock(head, rows, caption=caption)
 
 
-def _quantiles(scores: Mapping[str, LifeScores]) -> str:
+def _quantiles(scores: Mapping[str, LifeScores]) -> TableBlock:
     rows = [
         [
             Cell(name),
@@ -535,7 +548,7 @@ def _quantiles(scores: Mapping[str, LifeScores]) -> str:
         "Predicted quantiles. NASA score: mean over all inspections of exp(-d/13) - 1 for early and exp(d/10) - 1 for "
         "late predictions; d in units of median life / 200, and at most 60."
     )
-    return html.table(head, rows, caption=caption)
+    return TableBlock(head, rows, caption=caption)
 
 
 def _verdict(leaks: Sequence[Leak]) -> str:
@@ -548,7 +561,7 @@ def _verdict(leaks: Sequence[Leak]) -> str:
     return f"A trap: beside age, {' and '.join(found)} tells the remaining life. Scores on this set mean little."
 
 
-def _leaks(leaks: Sequence[Leak]) -> str:
+def _leaks(leaks: Sequence[Leak]) -> TableBlock:
     rows = [
         [
             Cell(leak.clue),
@@ -564,7 +577,7 @@ def _leaks(leaks: Sequence[Leak]) -> str:
         "says that something does. Whole histories tell their length by their last inspection: cut them before you "
         "test."
     )
-    return html.table(head, rows, caption=caption)
+    return TableBlock(head, rows, caption=caption)
 
 
 def _hours(found: Interval, form: str = ".1f") -> Cell:

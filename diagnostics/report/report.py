@@ -28,6 +28,7 @@ from diagnostics.judging.of_split import NetworkOptions, Training, train_models,
 from diagnostics.judging.sets import OtherSet, checked_table, measured_table, other_table
 from diagnostics.page.provenance import without_path
 from diagnostics.page.style import png_bytes, styled
+from diagnostics.page.template import write_page
 from diagnostics.page.wording import counted
 from diagnostics.prediction.model_facts import FACTS_FILE
 from diagnostics.prediction.released_model import written_model
@@ -160,7 +161,7 @@ def write_report(
     with stage("page", 1):
         drawn = {**opening, **drawing.figures(), **in_detail}
         pictures = _write_pictures(folder, drawn)
-        write_file(path, report_page(reported, pictures))
+        write_page(path, report_page(reported, pictures))
     return path
 
 

@@ -5,7 +5,7 @@ What classifiers say of test records: confusion matrices, and records named wron
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,10 +16,25 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.judging.alarms import Detectors
 from diagnostics.judging.judgement import TITLES
 from diagnostics.judging.of_split import Training
-from diagnostics.page import html, tables
-from diagnostics.page.html import Cell, table
+from diagnostics.page import tables
+from diagnostics.page.blocks import (
+    Block,
+    Cell,
+    ContentsLinks,
+    FigureBlock,
+    FigureGrid,
+    FoldedBlocks,
+    Heading,
+    Opening,
+    Page,
+    Paragraph,
+    RecordLinks,
+    RecordsPlace,
+    TableBlock,
+    note_blocks,
+)
 from diagnostics.page.provenance import origin_sentence, provenance
-from diagnostics.page.tables import records_line, records_link, state_links
+from diagnostics.page.tables import records_link, state_links
 from diagnostics.page.wording import capitalised, counted
 from diagnostics.records.state_classes import CLASS, ordered_states
 from diagnostics.report.answer import answer_sentences, first_answer, first_certainty
@@ -58,14 +73,12 @@ CAPTION = (
 )
 
 
-def wrong_records_table(training: Training, matrix: FeatureMatrix) -> str:
+def wrong_records_table(training: Training, matrix: FeatureMatrix) -> TableBlock:
     """Return the test records that some classifier names wrongly, with what each says; nothing where none does."""
     labels = matrix.rows(training.split.test).labels
     said = {found.name: np.array(found.predictions.classes)[found.predictions.predicted] for found in training.judged}
     wrong = np.stack([names != labels[CLASS] for names in said.values()])
     rows = np.flatnonzero(wrong.any(axis=0))
-    if not rows.size:
-        return ""
     order = rows[np.argsort(-wrong[:, rows].sum(axis=0), kind="stable")][:MOST_RECORDS]
     true = f"True {training.split.kind}"
     head = ["Record", "Gearbox", "Area [mm²]", true, *(capitalised(TITLES[name]) for name in said)]
@@ -74,7 +87,7 @@ def wrong_records_table(training: Training, matrix: FeatureMatrix) -> str:
         f"{counted(int(rows.size), 'test record')} of {labels[CLASS].size} that some classifier names wrongly "
         f"(shaded), those that most name wrongly first.{left}"
     )
-    return table(head, [_record(labels, row, said) for row in order], caption=caption, sortable=True, tall=True)
+    return TableBlock(head, [_record(labels, row, said) for row in order], caption=caption, sortable=True, tall=True)
 
 
 def _record(labels: dict[str, np.ndarray], row: int, said: dict[str, np.ndarray]) -> list[Cell]:
@@ -105,7 +118,7 @@ class Reported:
     yours: Scores | None = None
 
 
-def report_page(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> str:
+def report_page(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> Page:
     """Return the page.
 
     Parameters
@@ -116,43 +129,43 @@ def report_page(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -
     """
     title = f"Diagnostics of {reported.dataset.path.name}"
     sections = {name: blocks for name, blocks in _sections(reported, pictures).items() if any(blocks)}
-    parts = [part for name, blocks in sections.items() for part in (html.heading(name), *blocks)]
-    origin = html.paragraph(origin_sentence(reported.dataset))
-    whole = [html.heading(title, 1), origin, _answer(reported, pictures), html.contents(parts), *parts]
-    return html.page(title, whole, reported.look.live)
+    parts = [part for name, blocks in sections.items() for part in (Heading(name), *blocks)]
+    origin = Paragraph(origin_sentence(reported.dataset))
+    whole = [Heading(title, 1), origin, _answer(reported, pictures), ContentsLinks(), *parts]
+    return Page(title, whole, reported.look.live)
 
 
-def _answer(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> str:
+def _answer(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> Opening:
     detectors = reported.detectors
     states = next((tuple(one.states) for one in detectors.alone.values()), ())
     figure = next((pictures[name] for name in (FIRST, ANSWER) if name in pictures), None)
-    shown = html.figure_block(*figure, records_line("Records", state_links(states))) if figure else ""
+    shown = FigureBlock(*figure, RecordLinks("Records", state_links(states))) if figure else None
     sure = first_certainty(detectors, error_free=is_error_free(reported.dataset.config), audit=reported.audit)
     said = [("What is found", first_answer(detectors)), ("How sure", sure)]
-    return html.answer(said, shown)
+    return Opening(said, shown)
 
 
-def _detectors(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> list[str]:
+def _detectors(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> list[Block]:
     error_free = is_error_free(reported.dataset.config)
-    figure = [html.figure_block(*pictures[ANSWER])] if {FIRST, ANSWER} <= set(pictures) else []
+    figure = [FigureBlock(*pictures[ANSWER])] if {FIRST, ANSWER} <= set(pictures) else []
     table = [detector_table(reported.detectors)] if reported.detectors.alone else []
     told = answer_sentences(reported.detectors, error_free=error_free)
-    said = [f"<p><b>{html.inline(question)}.</b> {html.inline(text)}</p>" for question, text in told]
-    return [*said, html.figure_grid(figure), *table]
+    said = [Paragraph(text, lead=f"{question}.") for question, text in told]
+    return [*said, FigureGrid(figure), *table]
 
 
-def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> dict[str, list[str]]:
+def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> dict[str, Sequence[Block]]:
     """Return the blocks of every section by its title; a section without blocks is left out."""
     drawing, training = reported.drawing, reported.training
 
-    def grid(names: Mapping[str, Any]) -> str:
-        return html.figure_grid([html.figure_block(*pictures[name], drawing.behind.get(name, "")) for name in names])
+    def grid(names: Mapping[str, Any]) -> FigureGrid:
+        return FigureGrid([FigureBlock(*pictures[name], drawing.behind.get(name)) for name in names])
 
     labels = reported.matrix.labels
     notes = [*drawing.notes, *evaluation_notes(reported.dataset, reported.evaluated)]
     notes += ["Shaft angles come from the once-per-revolution pulses.", provenance(reported.dataset, reported.seed)]
     return {
-        "Records": [reported.look.block, tables.set_table(labels, ordered_states(labels))],
+        "Records": [RecordsPlace(), tables.set_table(labels, ordered_states(labels))],
         "Which damage is found": _detectors(reported, pictures),
         "What limits the answer": _limits(reported),
         "Features": _features(reported, pictures),
@@ -162,31 +175,31 @@ def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> 
         "Signals": [grid(drawing.vibration)],
         "Damage": [grid(drawing.damage)],
         "Definitions of the indicators": [definition_html({channel.quantity for channel in reported.dataset.channels})],
-        "Notes": html.notes(list(dict.fromkeys(notes))),
+        "Notes": note_blocks(list(dict.fromkeys(notes))),
     }
 
 
-def _features(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> list[str]:
+def _features(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> list[Block]:
     evaluated = reported.evaluated
-    details = html.folded("The best features over severity and size", detail_blocks(evaluated, pictures))
+    details = FoldedBlocks("The best features over severity and size", detail_blocks(evaluated, pictures))
     return [*ranking_blocks(reported.dataset, evaluated), details]
 
 
-def _limits(reported: Reported) -> list[str]:
+def _limits(reported: Reported) -> list[Block]:
     """Return what scores mean here, how far gearboxes and controls carry, what is hardest, and what the audit says."""
     trained = reported.training
     sentences = [meaning_of_scores(reported.dataset.config, scored=trained is not None)]
     sentences += [trust_sentence(trained)] if trained else []
     sentences += [*indicator_sentences(reported.found), *area_sentence(reported.found), reported.audit]
-    return [html.paragraph(sentence) for sentence in sentences]
+    return [Paragraph(sentence) for sentence in sentences]
 
 
-def _scores(training: Training | None) -> list[str]:
+def _scores(training: Training | None) -> list[Block]:
     if training is None:
-        return [html.paragraph("No classifier was trained. The notes give the reason.")]
+        return [Paragraph("No classifier was trained. The notes give the reason.")]
     return [
-        html.paragraph(scores_sentence(training)),
-        html.paragraph(comparison_sentence(training)),
+        Paragraph(scores_sentence(training)),
+        Paragraph(comparison_sentence(training)),
         tables.score_table(training),
         tables.calibration_table(training),
         *detection_blocks(training),
@@ -195,7 +208,7 @@ def _scores(training: Training | None) -> list[str]:
     ]
 
 
-def _named(reported: Reported) -> list[str]:
+def _named(reported: Reported) -> list[Block]:
     """Return confusion matrices and wrongly named records; the list of records has what the first classifier names."""
     training = reported.training
     if training is None:
@@ -205,4 +218,4 @@ def _named(reported: Reported) -> list[str]:
         for place, found in enumerate(training.judged)
     ]
     wrong = wrong_records_table(training, reported.matrix)
-    return [html.figure_grid([f"<div>{matrix}</div>" for matrix in matrices]), *([wrong] if wrong else [])]
+    return [FigureGrid(matrices), wrong]

@@ -65,7 +65,7 @@ def test_a_wheel_carries_them_where_they_are_looked_for(monkeypatch: pytest.Monk
 
 
 @pytest.mark.slow  # builds a wheel, for which pip fetches the build tool, and makes a virtual environment
-def test_an_installed_wheel_plans_a_preset_by_name(tmp_path: Path) -> None:
+def test_an_installed_wheel_plans_a_preset_by_name_and_writes_pages(tmp_path: Path) -> None:
     pip = [sys.executable, "-m", "pip", "-q", "--disable-pip-version-check"]
     subprocess.run([*pip, "wheel", "--no-deps", "-w", tmp_path, ROOT], check=True)
     venv.create(tmp_path / "venv", with_pip=False)
@@ -74,19 +74,22 @@ def test_an_installed_wheel_plans_a_preset_by_name(tmp_path: Path) -> None:
     subprocess.run([*pip, "--python", python, "install", "--no-deps", wheel], check=True)
     # The libraries of this environment without its siggen, which stands in a file of its own.
     libraries = next(path for path in sys.path if path.endswith("site-packages"))
-    code = (
-        f"import sys; sys.path.append({libraries!r}); import siggen; print(siggen.__file__); "
-        "from siggen.cli.app import main; main()"
-    )
-    said = subprocess.run(
-        [python, "-I", "-c", code, "plan", "quickstart", "--json"],
-        cwd=tmp_path,
-        check=True,
-        capture_output=True,
-        text=True,
-    ).stdout
+    begin = f"import sys; sys.path.append({libraries!r}); "
+
+    def run(code: str, *arguments: str) -> str:
+        command = [python, "-I", "-c", begin + code, *arguments]
+        return subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+
+    plan = "import siggen; print(siggen.__file__); from siggen.cli.app import main; main()"
+    said = run(plan, "plan", "quickstart", "--json")
     assert said.startswith(str(tmp_path / "venv"))
     assert '"name": "quickstart"' in said
+    parts = "from diagnostics.page.blocks import Page, Paragraph; from diagnostics.page.template import page_html; "
+    said = run(parts + "import diagnostics; print(diagnostics.__file__, page_html(Page('Rig', [Paragraph('Turns.')])))")
+    assert said.startswith(str(tmp_path / "venv"))
+    assert "<p>Turns.</p>" in said
+    assert "--paper" in said  # its style and scripts are in the wheel, too
+    assert "aria-sort" in said
     # What a newcomer writes has types with the wheel alone: py.typed is in it, and public names are resolved.
     (packages,) = (tmp_path / "venv" / "lib").glob("python3*/site-packages")
     (packages / "libraries.pth").write_text(libraries)

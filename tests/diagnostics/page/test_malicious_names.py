@@ -11,7 +11,8 @@ import pytest
 
 from diagnostics.cli.app import app
 from diagnostics.judging.of_split import NetworkOptions
-from diagnostics.page import html
+from diagnostics.page.blocks import Page, Paragraph
+from diagnostics.page.template import page_html
 from diagnostics.records.usable_records import with_channels
 from diagnostics.report.report import write_report
 from siggen.printable import printable
@@ -87,5 +88,7 @@ def test_the_page_of_a_machine_shows_names_of_files_as_text(tmp_path: Path) -> N
 
 
 def test_characters_that_turn_the_text_behind_them_are_named_and_right_to_left_names_stay() -> None:
-    assert html.inline("a\u202eb\u2066c") == "a\\u202eb\\u2066c"
-    assert html.inline("שלום") == "שלום"
+    text = page_html(Page("a\u202eb", [Paragraph("a\u202eb\u2066c"), Paragraph("שלום")]))
+    assert "<title>a\\u202eb</title>" in text
+    assert "<p>a\\u202eb\\u2066c</p>" in text
+    assert "<p>שלום</p>" in text

@@ -12,8 +12,18 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from diagnostics.page import html
-from diagnostics.page.html import Cell
+from diagnostics.page.blocks import (
+    PRINTED_ROWS,
+    Block,
+    Cell,
+    FigureBlock,
+    FigureGrid,
+    Heading,
+    Page,
+    Paragraph,
+    TableBlock,
+    note_blocks,
+)
 from diagnostics.page.security_policy import security_policy
 from diagnostics.page.style import (
     FAULT_COLOURS,
@@ -24,6 +34,8 @@ from diagnostics.page.style import (
     state_colours,
     styled,
 )
+from diagnostics.page.template import page_html
+from diagnostics.page.wording import minus
 
 BROWSER = next(
     (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), ""
@@ -38,19 +50,23 @@ ROWS = [
 HEAD = ("Feature", "AUC [-]", "p")
 
 
+def written(*blocks: Block) -> str:
+    return page_html(Page("x", blocks))
+
+
 @pytest.mark.drawn
 def test_figures_and_tables_are_numbered_by_kind_in_the_order_of_the_page() -> None:
     with styled():
         png = png_bytes(new_figure(height_in=1.0)[0])
-    parts = [html.table(HEAD, ROWS, caption="First."), html.figure_block(png, "A curve."), html.table(HEAD, ROWS)]
-    page = html.page("x", [*parts, html.table(HEAD, ROWS, caption="Second."), html.figure_block(png, "Another.")])
+    parts = [TableBlock(HEAD, ROWS, caption="First."), FigureBlock(png, "A curve."), TableBlock(HEAD, ROWS)]
+    page = written(*parts, TableBlock(HEAD, ROWS, caption="Second."), FigureBlock(png, "Another."))
     found = re.findall(r"<b>((?:Figure|Table) \d\.)</b> (\w+)", page)
     assert found == [("Table 1.", "First"), ("Figure 1.", "A"), ("Table 2.", "Second"), ("Figure 2.", "Another")]
 
 
 def test_a_table_without_its_script_has_plain_heads_and_row_names() -> None:
-    text = html.table(HEAD, ROWS, sortable=True)
-    assert "<button" not in text
+    text = written(TableBlock(HEAD, ROWS, sortable=True))
+    assert "<button" not in text.split("<script>")[0]
     assert text.count('<th scope="col">') == 3
     assert text.count('<th scope="row">') == 5
     assert 'tabindex="0"' in text  # a box that scrolls is reached by keyboard
@@ -64,23 +80,25 @@ def test_numbers_have_a_true_minus_and_zero_has_no_sign() -> None:
         "1-D network": "1-D network",
         "-30 … -8": "\N{MINUS SIGN}30 … \N{MINUS SIGN}8",
     }
-    assert {text: html.minus(text) for text in cells} == cells
+    assert {text: minus(text) for text in cells} == cells
 
 
 def test_code_and_long_names_are_set_and_nothing_else_is_taken_for_markup() -> None:
-    assert html.inline("`report DIR` of a_b <x>") == "<code>report DIR</code> of a_<wbr>b &lt;x&gt;"
+    assert "<p><code>report DIR</code> of a_<wbr>b &lt;x&gt;</p>" in written(Paragraph("`report DIR` of a_b <x>"))
 
 
 def test_paper_gets_the_first_rows_of_a_long_table_and_says_so() -> None:
-    rows = [[Cell(f"row {k}"), Cell(str(k))] for k in range(html.PRINTED_ROWS + 1)]
-    assert f"the first {html.PRINTED_ROWS} of {html.PRINTED_ROWS + 1} rows" in html.table(("a", "b"), rows, tall=True)
-    assert "On paper" not in html.table(("a", "b"), rows[1:], tall=True)
-    assert "On paper" not in html.table(("a", "b"), rows, tall=True, text=True)  # definitions are read, not looked up
-    assert f"tr:nth-child(n+{html.PRINTED_ROWS + 1})" in html.page("x", [])
+    rows = [[Cell(f"row {k}"), Cell(str(k))] for k in range(PRINTED_ROWS + 1)]
+    assert f"the first {PRINTED_ROWS} of {PRINTED_ROWS + 1} rows" in written(TableBlock(("a", "b"), rows, tall=True))
+    assert "On paper" not in written(TableBlock(("a", "b"), rows[1:], tall=True))
+    assert "On paper" not in written(
+        TableBlock(("a", "b"), rows, tall=True, text=True)
+    )  # definitions are read, not looked up
+    assert f"tr:nth-child(n+{PRINTED_ROWS + 1})" in written()
 
 
 def test_notes_are_sentences() -> None:
-    assert html.notes(["no network", "Why?"]) == ['<p class="note">No network.</p>', '<p class="note">Why?</p>']
+    assert note_blocks(["no network", "Why?"]) == [Paragraph("No network.", "note"), Paragraph("Why?", "note")]
 
 
 @pytest.mark.drawn
@@ -96,7 +114,7 @@ def test_a_picture_holds_a_palette_the_same_bytes_every_time_and_its_size() -> N
     assert png == drawn()
     assert png[25] == 3  # colour type of the header: palette
     assert struct.unpack(">II", png[16:24]) == (round(WIDTH_IN * 200), 400)
-    assert 'width="960" height="400"' in html.figure_block(png, "A caption.")
+    assert 'width="960" height="400"' in written(FigureBlock(png, "A caption."))
 
 
 @pytest.mark.drawn
@@ -139,7 +157,7 @@ def with_script(page: str, script: str) -> str:
 
 def sorted_names(clicks: str, tmp_path: Path) -> tuple[list[str], list[str]]:
     """Return the names of the rows and the states of the heads after clicks on heads."""
-    page = html.page("x", [html.table(HEAD, ROWS, sortable=True)])
+    page = written(TableBlock(HEAD, ROWS, sortable=True))
     clicked = f"var heads=document.querySelectorAll('thead button');[{clicks}].forEach(k=>heads[k].click())"
     dom = opened(with_script(page, clicked), tmp_path)
     names = re.findall(r'<th scope="row">(.*?)</th>', dom)
@@ -155,16 +173,14 @@ def test_on_a_phone_wide_tables_scroll_in_their_own_box_and_the_page_does_not(tm
     ]
     head = ("Indicator, channel", *[f"AUC, through_{k:03d}" for k in range(20)])
     with styled():
-        figure = html.figure_block(
-            png_bytes(new_figure(height_in=1.0)[0]), "A curve of energy_operator_teager_pinion_h5_k3."
-        )
-    tables = [html.table(head, wide, caption="Wide.", sortable=True), html.table(HEAD, ROWS)]
-    parts = [html.heading("sideband_ratio_pinion_h5_k3__side_horizontal", 1), html.paragraph("a" * 90), *tables]
+        figure = FigureBlock(png_bytes(new_figure(height_in=1.0)[0]), "A curve of energy_operator_teager_pinion_h5_k3.")
+    tables = [TableBlock(head, wide, caption="Wide.", sortable=True), TableBlock(HEAD, ROWS)]
+    parts = [Heading("sideband_ratio_pinion_h5_k3__side_horizontal", 1), Paragraph("a" * 90), *tables]
     script = (
         "var root=document.documentElement,box=document.querySelector('.scroll');"
         "document.title=[root.scrollWidth<=window.innerWidth,box.scrollWidth>box.clientWidth,window.innerWidth]"
     )
-    page = with_script(html.page("x", [*parts, html.figure_grid([figure])]), script)
+    page = with_script(written(*parts, FigureGrid([figure])), script)
     found = re.search(r"<title>(.*?)</title>", opened(page, tmp_path, width=390))
     assert found is not None
     fits, scrolls, width = found.group(1).split(",")

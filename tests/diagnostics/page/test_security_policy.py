@@ -6,11 +6,12 @@ import base64
 import hashlib
 import re
 
-from diagnostics.page.html import page
+from diagnostics.page.blocks import Page, Paragraph
+from diagnostics.page.template import page_html
 
 
 def test_a_page_allows_its_own_scripts_and_no_network() -> None:
-    text = page("Title", ["<p>One</p>"])
+    text = page_html(Page("Title", [Paragraph("One")]))
     (policy,) = re.findall(r'<meta http-equiv="Content-Security-Policy" content="([^"]*)">', text)
     rules = dict(rule.split(" ", 1) for rule in policy.split("; "))
     assert rules["default-src"] == "'none'"

@@ -7,9 +7,9 @@ import re
 import numpy as np
 import pytest
 
-from diagnostics.page.html import style_sheet
+from diagnostics.page.template import style_sheet
 
-STYLE = style_sheet(20)
+STYLE = style_sheet()
 LIGHT, DARK = (
     dict(re.findall(r"--(\w+):#(\w+)", part))
     for part in re.findall(r":root(?::not\(.print\))?\{(.*?)\}", STYLE, re.DOTALL)
