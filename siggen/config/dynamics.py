@@ -70,7 +70,10 @@ class MeshSection(Section):
         "pair by itself, its contact solved across the face",
     )
     tip_relief_um: Annotated[Number, Within(least=0)] = Field(
-        default=8.0, description="parabolic relief at the tips of both gears, over a quarter of a base pitch"
+        default=8.0, description="parabolic relief at the tips of both gears"
+    )
+    tip_relief_pitches: Annotated[Number, Within(above=0, most=1), Usual(0.1, 0.8)] = Field(
+        default=0.25, description="length of that relief along the line of action, in base pitches"
     )
     damage: Literal["all", "geometry"] = Field(
         default="all",

@@ -388,6 +388,7 @@ def tooth_law(dynamics: Dynamics) -> ToothLaw:
         damping=ratio if mesh.damping == "constant" else DampingLaw(*map(constant, shares)),
         backlash_m=1e-6 * constant(dynamics.backlash_um),
         relief_m=1e-6 * constant(mesh.tip_relief_um),
+        relief_pitches=constant(mesh.tip_relief_pitches),
         edge_radius_m=1e-3 * constant(mesh.pit_edge_radius_mm),
         section_loss=mesh.damage == "all",
         tilts=dynamics.shafts is not None,

@@ -59,7 +59,7 @@ class ToothLaw:
     method, steps_per_sample, tolerance : the integrator; steps are those of the law linear, the tolerance that of pairs
     damping_ratio, damping : of critical, as one number and as the law of the pairs has it
     backlash_m : along the line of action
-    relief_m : at the tips of both gears
+    relief_m, relief_pitches : at the tips of both gears, and its length along the line of action in base pitches
     edge_radius_m : of damage
     section_loss : whether damage weakens the sections of teeth, too
     tilts : whether gears tilt under load
@@ -73,6 +73,7 @@ class ToothLaw:
     damping: float | DampingLaw
     backlash_m: float
     relief_m: float
+    relief_pitches: float
     edge_radius_m: float
     section_loss: bool
     tilts: bool

@@ -20,9 +20,6 @@ from siggen.mesh.stiffness_options import StiffnessOptions
 from siggen.mesh.table_options import TableOptions, face_slices
 from siggen.mesh.tooth_law import ToothLaw
 
-RELIEF_LENGTH = 0.25
-"""Length of the tip relief along the line of action, in base pitches (assumed)."""
-
 LEAST_STIFFNESS = 1e-6
 """Of the largest stiffness of a pair; spur teeth are far above."""
 
@@ -91,7 +88,7 @@ def face_options(law: ToothLaw, largest_force_n: float, pair: GearPair) -> Table
 
 def tip_relief(law: ToothLaw, pair: GearPair) -> TipRelief:
     """Return the relief of the teeth of a pair."""
-    return TipRelief(law.relief_m, RELIEF_LENGTH * pair.base_pitch_m)
+    return TipRelief(law.relief_m, law.relief_pitches * pair.base_pitch_m)
 
 
 def whole_face(pair: GearPair, damage: Damage, options: StiffnessOptions, points: int) -> MeshTables:

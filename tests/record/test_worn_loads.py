@@ -15,7 +15,7 @@ from siggen.mesh.mesh_tables import TABLE_POINTS
 from siggen.mesh.pair_law import MeshConstants, pair_law
 from siggen.mesh.static_mesh import static_approaches_m
 from siggen.mesh.stiffness_options import StiffnessOptions
-from siggen.record.contact import RELIEF_LENGTH, tooth_tables
+from siggen.record.contact import tooth_tables
 from siggen.record.motion import teeth_missing
 from siggen.record.teeth import load_at_rest
 from tests.damage.test_damage import config_with
@@ -39,7 +39,7 @@ def worn() -> Worn:
 
 @cache
 def by_hand() -> tuple[SlowPair, list[np.ndarray]]:
-    slow = SlowPair(PAIR, RELIEF_M, RELIEF_LENGTH * PAIR.base_pitch_m, PER_PITCH)
+    slow = SlowPair(PAIR, RELIEF_M, 0.25 * PAIR.base_pitch_m, PER_PITCH)
     return slow, slow.worn(WORE_UNDER_N, DEPTH_M, 160)
 
 
