@@ -44,7 +44,6 @@ class RubbingLevels:
     """Rough flanks that rub."""
 
     correlation_m: float
-    roughness_m: float
     roll_off_m: float
     hurst_exponent: float
     asperity_exponent: float
@@ -79,6 +78,9 @@ class MachineLevels:
     low_corner_hz: float
     low_exponent: float
     high_corner_hz: float
+    shaft_depth: float
+    level_std: float
+    level_time_s: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ their phase against the pinion's angle, so that all states of a gearbox share th
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
 from functools import partial
 from math import pi
 
@@ -18,12 +19,13 @@ from siggen.drivetrain.drive import Rotation
 from siggen.gearbox.background import DrawnBackground, ForeignLevels, MachineLevels, ShaftLevels
 from siggen.gearbox.plan import PlannedRecord
 from siggen.gearbox.specimen import Specimen
-from siggen.names import MACHINES
+from siggen.names import MACHINES, Names
 from siggen.record.background_course import BackgroundCourse, course_at
 from siggen.record.bearing_noise import BearingVelocities
 from siggen.record.forced_ways import AXES
 from siggen.record.rubbing import RubbingForce, SetRubbing
 from siggen.sensing.inputs import BACKGROUND, Input
+from siggen.sensing.modulation import LevelCourse, shaft_course
 from siggen.sensing.noise import ShapedNoise, contact_filter, rising_floor, shape_taps
 
 FOREIGN_LINES = 15
@@ -53,7 +55,7 @@ class BackgroundBlocks:
         self._next, self._length = first, length
         self._rubbing: RubbingForce | SetRubbing | None = None
         self._bearings: BearingVelocities | None = None
-        self._machines: dict[str, ShapedNoise] = {}
+        self._machines: dict[str, MachineNoise] = {}
         self.labels: dict[str, object] = {}
 
     def take(self, count: int) -> dict[Input, FloatArray]:
@@ -69,7 +71,7 @@ class BackgroundBlocks:
         if self._bearings is not None:
             forces |= self._bearings.take(course)
             labels |= self._bearings.labels
-        forces |= {name: noise.take(course.length) for name, noise in self._machines.items()}
+        forces |= {name: noise.take(course) for name, noise in self._machines.items()}
         if self._drawn.machines is not None:
             labels["machine_force_n_per_sqrt_hz"] = self._drawn.machines.density_n_per_sqrt_hz
         self.labels = self.labels or labels
@@ -84,13 +86,28 @@ class BackgroundBlocks:
         if drawn.bearings:
             self._bearings = BearingVelocities(drawn.bearings, course, specimen)
         if drawn.machines is not None:
-            self._machines = machine_noise(drawn.machines, course)
+            self._machines = machine_noise(drawn.machines, course, specimen.names)
 
     def _course(self, count: int) -> BackgroundCourse:
         return course_at(*self._of_record, self._next, count)
 
 
-def machine_noise(machines: MachineLevels, course: BackgroundCourse) -> dict[str, ShapedNoise]:
+@dataclass(frozen=True, slots=True)
+class MachineNoise:
+    """Force of a machine, whose power swells with its shaft and by chance."""
+
+    noise: ShapedNoise
+    level: LevelCourse
+    shaft: str
+    depth: float
+
+    def take(self, course: BackgroundCourse) -> FloatArray:
+        """Return the next values (k,) [N]."""
+        turning = shaft_course([course.shaft_lines(self.shaft, course.shafts[self.shaft], self.depth)])
+        return np.asarray(self.noise.take(course.length) * np.sqrt(turning * self.level.take(course.length)))
+
+
+def machine_noise(machines: MachineLevels, course: BackgroundCourse, names: Names) -> dict[str, MachineNoise]:
     """Return the noise of both machines beside the gearbox, independent of each other."""
 
     def shape(frequency_hz: FloatArray) -> FloatArray:
@@ -99,7 +116,16 @@ def machine_noise(machines: MachineLevels, course: BackgroundCourse) -> dict[str
         return machines.density_n_per_sqrt_hz * rising * falling + 1e-30
 
     taps = shape_taps(shape, MACHINE_TAPS, course.fs_hz)
-    return {name: ShapedNoise(taps, course.fs_hz, course.of_record(f"background.machines.{name}")) for name in MACHINES}
+    memory = machines.level_time_s * course.fs_hz
+    return {
+        name: MachineNoise(
+            ShapedNoise(taps, course.fs_hz, course.of_record(f"background.machines.{name}")),
+            LevelCourse(machines.level_std, memory, course.of_record(f"background.machines.{name}.level")),
+            names.shafts[place].inner,
+            machines.shaft_depth,
+        )
+        for name, place in MACHINES.items()
+    }
 
 
 def line_forces(

@@ -17,7 +17,7 @@ from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.gears.gear_pair import GearPair
 from siggen.motion.motion import TRANSIENT_CAP_S
 from siggen.names import Side
-from siggen.record.friction import asperity_share
+from siggen.record.friction import asperity_share, composite_roughness_m
 from siggen.seeding import Stream, named_generator, named_uniforms
 from siggen.sensing.modulation import SHAFT_LINES, shaft_phasors
 
@@ -28,8 +28,9 @@ class BackgroundCourse:
 
     Or at a part of them, `history` samples from its first one to that of the record. `turns` gives exp(i order Θ)
     (length,), each order once. `shafts` are the turns of every shaft per turn of the pinion, by its name in sections.
-    `asperity_share` is that of the mean load at the pitch point of `pair`, whose pinion has the angle. `uniform` gives
-    uniforms of the gearbox, `of_gearbox` and `of_record` generators.
+    `asperity_share` is that of the mean load at the pitch point of `pair`, whose pinion has the angle; `roughness_m` is
+    the rms roughness of both its flanks together. `uniform` gives uniforms of the gearbox, `of_gearbox` and `of_record`
+    generators.
     """
 
     angle_rad: FloatArray
@@ -40,6 +41,7 @@ class BackgroundCourse:
     pair: GearPair
     point: OperatingPoint
     asperity_share: float
+    roughness_m: float
     uniform: Callable[[str], float]
     of_gearbox: Callable[[str], np.random.Generator]
     of_record: Callable[[str], np.random.Generator]
@@ -100,6 +102,7 @@ def course_at(
         pair,
         point,
         asperity_share(specimen.law.friction, pair, of_mesh),
+        composite_roughness_m(specimen.law.friction)[0],
         named_uniforms(specimen.seed, Stream.BACKGROUND, record.specimen_id),
         lambda name: named_generator(specimen.seed, Stream.BACKGROUND, record.specimen_id, name=name),
         lambda name: named_generator(specimen.seed, Stream.BACKGROUND_NOISE, *record.owner, name=name),

@@ -107,7 +107,7 @@ def force_spectrum(rubbing: RubbingLevels, course: BackgroundCourse) -> ForceSpe
     pair = course.pair
     stiffness = MESH_STIFFNESS_PA * pair.face_width_m
     averaged = max(pair.face_width_m / rubbing.correlation_m, 1.0)
-    roughness_m = rubbing.roughness_m / sqrt(averaged)
+    roughness_m = course.roughness_m / sqrt(averaged)
     # both flanks roll over the pitch point at R_b1 tan(α_w) Ω_1
     rolling_m_s = 2.0 * pi * course.point.speed_hz * pair.pinion.base_radius_m * tan(pair.working_pressure_angle_rad)
     return ForceSpectrum(

@@ -19,7 +19,7 @@ from siggen.gearbox.housing import Block
 from siggen.gearbox.plan import planned_record
 from siggen.gearbox.specimen import Specimen
 from siggen.motion.response import Piece
-from siggen.record.background import BackgroundBlocks
+from siggen.record.background import BackgroundBlocks, machine_noise
 from siggen.record.background_course import BackgroundCourse, course_at
 from siggen.record.bearing_noise import velocity_density
 from siggen.record.channels import BlockInputs
@@ -59,7 +59,9 @@ def quick_mounts(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def loaded(*sensors: dict[str, Any], **changes: Any) -> SetDesign:
-    changes = {"dynamics__model": "casing", "duration_s": 0.1, "specimens": 2, **changes}
+    """Return a design whose flanks touch: in cold oil none would rub."""
+    hot = {"dynamics__friction__oil_temperature_c": 60.0}
+    changes = {"dynamics__model": "casing", "duration_s": 0.1, "specimens": 2, **hot, **changes}
     return load_config(minimal(sensors=by_name(sensors or (ON_LID, PLAIN)), **changes))
 
 
@@ -247,10 +249,10 @@ def test_machines_stand_at_both_ends_of_three_shafts_and_turn_with_them() -> Non
 
 def test_rubbing_is_roughness_times_stiffness_over_the_averaging_face() -> None:
     """0.4 µm over 20 mm at 0.2 mm, 4e8 N/m: 16 N before the contact's width and the film take their part."""
-    changes = {"roughness_m": 0.4e-6, "correlation_m": 0.2e-3, "asperity_exponent": 1.0, "pinion_depth": 0.0}
+    changes = {"correlation_m": 0.2e-3, "asperity_exponent": 1.0, "pinion_depth": 0.0}
     changes |= {"gear_depth": 0.0, "sliding_exponent": 0.0, "roll_off_m": 5e-3, "hurst_exponent": 1.0}
     config, rubbing = rubbed(changes, 1.0)
-    course = whole_course(config)
+    course = replace(whole_course(config), roughness_m=0.4e-6)
     spectrum = force_spectrum(rubbing, course)
     assert spectrum.rough_n == pytest.approx(16.0 * course.asperity_share)
     # waves of 5 mm pass a contact of some 0.1 mm as they are: all the power is left
@@ -313,6 +315,31 @@ def test_the_replayed_share_of_the_rubbing_returns_every_turn() -> None:
     share = at_angles.mean(axis=0).var() / at_angles.var()
     # the pinion's half of the share; of the rest 1/94 is left. The gear's turns 2.6 times slower and averages out too.
     assert share == pytest.approx(0.25, abs=0.04)
+
+
+def test_the_noise_of_machines_swells_with_their_shafts_and_by_chance_and_keeps_its_power() -> None:
+    """Kurtosis 3 exp(s²) (1 + Σ d²/(2 k)) in closed form, lines k = 1 to 3 of the shaft of depth d/√k."""
+    config = loaded(background={"machines": {}}, duration_s=10.0)
+    specimen, course = config.gearbox(0), whole_course(config)
+    assert specimen.background is not None
+    assert specimen.background.machines is not None
+    levels = replace(specimen.background.machines, low_corner_hz=15.0, high_corner_hz=1000.0, level_time_s=2e-3)
+    found = {}
+    for depth, std in ((0.0, 0.0), (0.35, 0.0), (0.0, 0.6)):
+        own = replace(levels, shaft_depth=depth, level_std=std)
+        found[depth, std] = machine_noise(own, course, specimen.names)["load"].take(course)
+    even = found.pop((0.0, 0.0))
+    band = frequencies(even.size, config.fs_hz) > 500.0  # above what a level changes within
+    even, *swelling = (np.fft.irfft(np.fft.rfft(x) * band, x.size) for x in (even, *found.values()))
+    for (depth, std), noise in zip(found, swelling, strict=True):
+        # 10 s hold 20,000 independent values: kurtosis to 3 %; its level to 4 %, of 2,500 independent levels
+        assert np.mean(noise**2) / np.mean(even**2) == pytest.approx(1.0, rel=0.05)
+        closed = np.exp(std**2) * (1.0 + 0.5 * depth**2 * (1.0 + 1.0 / 2.0 + 1.0 / 3.0))
+        assert np.mean(noise**4) / np.mean(noise**2) ** 2 == pytest.approx(3.0 * closed, rel=0.08)
+    turning = found[0.35, 0.0] ** 2
+    gear_hz = course.point.speed_hz * float(specimen.shaft_turns[-1])
+    line = np.abs(np.mean(turning * np.exp(-2j * np.pi * gear_hz * np.arange(turning.size) / config.fs_hz)))
+    assert 2.0 * line / np.mean(turning) == pytest.approx(0.35, abs=0.05)  # of its own shaft; noise of 0.02
 
 
 def test_a_base_needs_a_casing() -> None:
