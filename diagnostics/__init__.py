@@ -9,6 +9,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from diagnostics.bench.steps import (
+        benchmark_baselines,
+        commit_benchmark,
+        leaderboard,
+        make_benchmark,
+        reveal_benchmark,
+    )
     from diagnostics.indicators.classifier_table import table
     from diagnostics.judging.alarms import evaluate
     from diagnostics.loader.window_arrays import windows
@@ -22,8 +29,13 @@ __all__ = [
     "BoostingBaseline",
     "LogisticBaseline",
     "averages",
+    "benchmark_baselines",
+    "commit_benchmark",
     "evaluate",
+    "leaderboard",
+    "make_benchmark",
     "open_benchmark",
+    "reveal_benchmark",
     "score",
     "score_benchmark",
     "table",
@@ -31,6 +43,11 @@ __all__ = [
 ]
 
 _HOMES = {
+    "make_benchmark": "diagnostics.bench.steps",
+    "commit_benchmark": "diagnostics.bench.steps",
+    "reveal_benchmark": "diagnostics.bench.steps",
+    "benchmark_baselines": "diagnostics.bench.steps",
+    "leaderboard": "diagnostics.bench.steps",
     "open_benchmark": "diagnostics.scoring.benchmark",
     "score_benchmark": "diagnostics.scoring.benchmark_scores",
     "score": "diagnostics.scoring.score",

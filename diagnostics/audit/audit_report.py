@@ -36,7 +36,7 @@ from diagnostics.audit.detectability import (
     length_at,
     waveform_change,
 )
-from diagnostics.audit.envelope import BENCH, QuantityShare, Realism, realism
+from diagnostics.audit.envelope import QuantityShare, Realism, realism
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from diagnostics.audit.reference_comparison import reference_comparison, reference_windows, synthetic_windows
 from diagnostics.audit.signal_attackers import NETWORK, PREPARED, signal_attackers
@@ -50,7 +50,7 @@ from diagnostics.page.style import png_bytes, styled
 from diagnostics.page.template import write_page
 from diagnostics.records.recording import names_of
 from siggen.dataset.reading import Dataset
-from siggen.errors import UsageError, how_to_install
+from siggen.errors import how_to_install
 from siggen.file_writing import write_file
 
 SEEN_ALONE, BESIDE = "alone", "beside a healthy record"
@@ -165,22 +165,12 @@ class AuditOptions:
     ----------
     seed : int
         Seed of permutations, folds and bootstrap.
-    paired, with_realism : bool
-        Whether to judge differences from own healthy records, and to compare with the ranges of healthy gearboxes.
-    speed : str
-        Range of the speed variation: `bench` or `variable`.
     reference : Path, optional
         Folder of measured healthy recordings to compare with.
-    reference_fs_hz : float, optional
-        Their sampling frequency [Hz] where files do not state it.
     """
 
     seed: int = 0
-    paired: bool = False
-    with_realism: bool = False
-    speed: str = BENCH
     reference: Path | None = None
-    reference_fs_hz: float | None = None
 
 
 @single_thread()
@@ -205,10 +195,8 @@ def audit_set(
     options = options or AuditOptions()
     seed, reference = options.seed, options.reference
     require_packages("the audit", "sklearn", "matplotlib")
-    if options.with_realism and names_of(dataset)[0].planetary:
-        raise UsageError(f"--realism: its ranges were measured on pairs of gears; {dataset.path} holds planetary sets")
     # first, so that a wrong folder is said before minutes have passed
-    real = reference_windows(reference, options.reference_fs_hz) if reference else None
+    real = reference_windows(reference) if reference else None
     started_s = time.perf_counter()
     with stage("measuring", int(dataset.labels(columns=["record_id"]).num_rows)) as advance:
         measured = measured_set(dataset, own, advance)
@@ -216,12 +204,12 @@ def audit_set(
     with stage("traps", 1):
         findings = separability_findings(measured, seed)
     with stage("detectability", 1):
-        found = _detections(measured, seed, options.paired)
+        found = _detections(measured, seed)
         best = best_indicators(measured.matrix(), seed)
     attacked, chance, shams = _attacks(measured, seed, stage)
     found |= attacked
     findings += sham_traps(shams)
-    compared = realism(measured, options.speed) if options.with_realism else None
+    compared = None if names_of(dataset)[0].planetary else realism(measured)
     beside = None
     if real is not None:
         with stage("windows of healthy records", int(measured.checksums.shape[0])) as advance:
@@ -232,7 +220,7 @@ def audit_set(
         verdict=verdict(findings, specimens, chance),
         realism=compared,
         detections=found,
-        notes=tuple(_notes(measured, found, options.with_realism)),
+        notes=tuple(_notes(measured, found, names_of(dataset)[0].planetary)),
         seconds_per_record=seconds,
         records=int(measured.checksums.shape[0]),
         specimens=specimens,
@@ -245,12 +233,12 @@ def audit_set(
     )
 
 
-def _detections(measured: MeasuredSet, seed: int, paired: bool) -> dict[str, list[Detectability]]:
-    found = {UNPAIRED: detections(measured, features(measured), seed)}
-    if paired:
-        found[PAIRED] = detections(measured, features(measured, paired=True), seed)
-        found[CHANGE] = detections(measured, waveform_change(measured), seed)
-    return found
+def _detections(measured: MeasuredSet, seed: int) -> dict[str, list[Detectability]]:
+    return {
+        UNPAIRED: detections(measured, features(measured), seed),
+        PAIRED: detections(measured, features(measured, paired=True), seed),
+        CHANGE: detections(measured, waveform_change(measured), seed),
+    }
 
 
 def _attacks(
@@ -277,7 +265,7 @@ def sham_sides(measured: MeasuredSet, bank: list[Entry]) -> dict[str, list[Entry
     }
 
 
-def _notes(measured: MeasuredSet, found: dict[str, list[Detectability]], with_realism: bool) -> list[str]:
+def _notes(measured: MeasuredSet, found: dict[str, list[Detectability]], planetary: bool) -> list[str]:
     notes = []
     for name, entries in found.items():
         lacking = [entry.state for entry in entries if not math.isfinite(entry.auc.value)]
@@ -291,9 +279,11 @@ def _notes(measured: MeasuredSet, found: dict[str, list[Detectability]], with_re
             notes.append(f"No AUC from {name} for {', '.join(lacking)}: {why}.")
     if missing_packages("torch"):
         notes.append(f"The {NETWORK} was not tried: it needs PyTorch: {how_to_install('cnn')}.")
-    if with_realism and not measured.healthy.any():
+    if planetary:
+        notes.append("No comparison with healthy gearboxes: its ranges were measured on pairs of gears.")
+    elif not measured.healthy.any():
         notes.append("No comparison with healthy gearboxes: the set has no healthy records.")
-    if with_realism and len(measured.channels) < 3:
+    elif len(measured.channels) < 3:
         notes.append("No spread between sensors: at least three channels are needed.")
     return notes
 

@@ -13,8 +13,6 @@ import numpy as np
 
 from diagnostics.audit.measured_set import MeasuredSet
 
-BENCH, VARIABLE = "bench", "variable"
-
 
 @dataclass(frozen=True, slots=True)
 class MeasuredQuantity:
@@ -69,7 +67,8 @@ BACKGROUND_QUANTITIES = (
 Where one machine was measured, the other end is judgement (docs/understand/methods.md).
 """
 
-SPEED_RANGES = {BENCH: ((0.007, 0.05),), VARIABLE: ((0.3, 1.5),)}
+SPEED_RANGES = ((0.007, 0.05), (0.3, 1.5))
+"""Of test benches, and of machines whose speed varies."""
 
 SPREAD_RANGES = {
     "sideband1_db": (1.0, 5.0),
@@ -120,15 +119,12 @@ class Realism:
         return float(np.mean([share.inside for share in self.background])) if self.background else math.nan
 
 
-def quantities(speed: str = BENCH) -> tuple[MeasuredQuantity, ...]:
-    """Return the thirteen quantities, the last with the range of a bench or of a variable-speed machine."""
-    return (
-        *QUANTITIES,
-        MeasuredQuantity("speed_variation_percent", f"speed variation, {speed} [%]", SPEED_RANGES[speed]),
-    )
+def quantities() -> tuple[MeasuredQuantity, ...]:
+    """Return the thirteen quantities, the last with the ranges of benches and of machines of variable speed."""
+    return (*QUANTITIES, MeasuredQuantity("speed_variation_percent", "speed variation [%]", SPEED_RANGES))
 
 
-def realism(measured: MeasuredSet, speed: str = BENCH) -> Realism | None:
+def realism(measured: MeasuredSet) -> Realism | None:
     """Return how the healthy records lie in the ranges; None without healthy records or without accelerations.
 
     Ranges were measured with accelerometers: channels of another quantity are left out and named.
@@ -137,13 +133,11 @@ def realism(measured: MeasuredSet, speed: str = BENCH) -> Realism | None:
     ----------
     measured : MeasuredSet
         The set.
-    speed : str
-        `bench` or `variable`.
     """
     judged = np.ix_(measured.healthy, measured.accelerations)
     if not all(one.size for one in judged):
         return None
-    shares = [quantity_share(q, measured.values[measured.column(q.name)][judged]) for q in quantities(speed)]
+    shares = [quantity_share(q, measured.values[measured.column(q.name)][judged]) for q in quantities()]
     inside = [share.quantity.inside(share.values) for share in shares]
     background = [q for q in BACKGROUND_QUANTITIES if np.isfinite(measured.values[q.name][judged]).any()]
     return Realism(

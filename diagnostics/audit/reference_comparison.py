@@ -15,7 +15,7 @@ that ran once: they are one recording. Windows of one recording are not independ
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -85,15 +85,13 @@ class _Windows:
         return WindowSet(np.stack(self.values), np.array(self.owner), np.array(self.channel))
 
 
-def reference_windows(folder: Path, fs_hz: float | None) -> WindowSet:
+def reference_windows(folder: Path) -> WindowSet:
     """Return the windows of all recordings of a folder.
 
     Parameters
     ----------
     folder : Path
         With files, or with a subfolder for every recording.
-    fs_hz : float, optional
-        Sampling frequency [Hz] of files that do not state it.
 
     Raises
     ------
@@ -115,14 +113,12 @@ def reference_windows(folder: Path, fs_hz: float | None) -> WindowSet:
                 f"{str(error).rstrip('.')}. `audit` takes no option of `siggen-diagnostics indicators`: correct the "
                 "file, or leave it out"
             ) from error
-        if taken.fs_hz is None and fs_hz is not None:
-            taken = replace(taken, fs_hz=fs_hz, rate_why="--reference-fs")
         say_taken(taken)
         rate = taken.fs_hz
         if not rate or rate < LOWEST_RATE_HZ:
             raise UsageError(
-                f"{path}: sampling rate: received {rate}; {LOWEST_RATE_HZ:g} Hz or more are needed. Files that do not "
-                "state it: give it with --reference-fs"
+                f"{path}: sampling rate: received {rate}; {LOWEST_RATE_HZ:g} Hz or more are needed. Give the file "
+                "a column of times with its unit, time [s], or write it as WAV"
             )
         inside = path.relative_to(folder)
         for column in columns.values():

@@ -90,8 +90,8 @@ def board_entries(benchmark: Benchmark, labels: SealedLabels, folder: Path | Non
     files = [*([own] if own.is_file() else []), *(file for file in files if file.resolve() != own.resolve())]
     if not files:
         raise UsageError(
-            f"{folder or benchmark.path}: holds no predictions ({', '.join(SUFFIXES)}); `siggen-diagnostics bench "
-            "baselines` writes those of the baselines"
+            f"{folder or benchmark.path}: holds no predictions ({', '.join(SUFFIXES)}); `diagnostics."
+            "benchmark_baselines` writes those of the baselines"
         )
     parts, ranking = judged_parts(benchmark, labels), ranking_of(benchmark)
     weights = {part.name: bootstrap_weights(part.truth.specimen, seed, RESAMPLES) for part in parts}

@@ -234,7 +234,7 @@ def reveal(benchmark: Benchmark, sealed: Path | None = None) -> Path:
         If nothing was committed to, or other labels.
     """
     if benchmark.commitment() is None:
-        raise UsageError(f"{benchmark.path}: nothing was committed to; run `siggen-diagnostics bench commit` first")
+        raise UsageError(f"{benchmark.path}: nothing was committed to; call `diagnostics.commit_benchmark` first")
     found, target = labels_of(benchmark, sealed), benchmark.path / REVEALED
     if not target.exists() or not target.samefile(found.file):
         write_file(target, found.file.read_bytes())
@@ -272,7 +272,7 @@ class WantedBench:
     facts: Path | None = None
 
 
-def make_benchmark(
+def write_benchmark(
     out: Path, hidden: Path, secret: bytes, wanted: WantedBench, workers: int | None = None, stage: Stage = silent_stage
 ) -> Benchmark:
     """Make a benchmark, or go on with one.

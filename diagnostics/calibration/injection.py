@@ -60,7 +60,7 @@ difference over that of the recording) say what was added; -1 stands for nothing
 
 `specimen_id` is the number of the recording, so all rows of a recording are on one side of the split: the last fifth,
 one at least, is the test. Recordings are cut to the length of the shortest. `torque_nm` is the middle of the
-configuration's range in all rows: a recording does not say it. `siggen-diagnostics report --models-only` reads this
+configuration's range in all rows: a recording does not say it. `siggen-diagnostics report` reads this
 folder; it needs two recordings for training and one for the test.
 
 **Your recordings are in this folder. `siggen publish` refuses it.** Whether a detector gains by such rows is open:

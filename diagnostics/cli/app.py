@@ -12,7 +12,6 @@ import siggen
 from diagnostics.base.kept_memory import keep_memory
 from diagnostics.cli.audit import audit
 from diagnostics.cli.baseline import baseline
-from diagnostics.cli.bench import bench
 from diagnostics.cli.calibrate import calibrate
 from diagnostics.cli.check import check
 from diagnostics.cli.explore import explore
@@ -43,7 +42,6 @@ COMMANDS: dict[str, tuple[Callable[..., None], ...]] = {
 for heading, commands in COMMANDS.items():
     for command in commands:
         app.command(rich_help_panel=heading)(command)
-app.add_typer(bench, name="bench", rich_help_panel="A benchmark with sealed labels")
 
 
 def _show_version(wanted: bool) -> None:

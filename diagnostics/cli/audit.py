@@ -2,51 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from diagnostics.cli.set_options import OwnIndicators
+from diagnostics.cli.set_options import OwnIndicators, Seed
 from siggen.cli.echo import echo
-from siggen.cli.option_groups import grouped
+from siggen.cli.json_output import AsJson, echo_json
 
 
-class Speed(StrEnum):
-    """Kind of machine whose speed variation is compared with."""
-
-    bench = "bench"
-    variable = "variable"
-
-
-@dataclass(frozen=True, slots=True)
-class RealismOptions:
-    """How real the set looks."""
-
-    realism: Annotated[
-        bool, typer.Option("--realism", help="Compare healthy records with the ranges of measured healthy gearboxes.")
-    ] = False
-    speed: Annotated[Speed, typer.Option(help="Kind of machine to compare the speed variation with.")] = Speed.bench
-    reference: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FOLDER",
-            help="Compare with your own healthy recordings: one file or one subfolder each, 4 or more for a verdict.",
-            show_default=False,
-        ),
-    ] = None
-    reference_fs: Annotated[
-        float | None,
-        typer.Option(metavar="HZ", help="Sampling frequency of recordings that do not state it.", show_default=False),
-    ] = None
-
-
-@grouped
 def audit(
     directory: Annotated[
-        Path, typer.Argument(metavar="DIR", help="Folder or s3://... of a finished set.", show_default=False)
+        Path, typer.Argument(metavar="SET", help="Folder or s3://... of a finished set.", show_default=False)
     ],
     *,
     strict: Annotated[
@@ -55,27 +23,34 @@ def audit(
             "--strict", help="End with exit code 4 unless passed: after a trap, or with too few gearboxes to tell."
         ),
     ] = False,
-    paired: Annotated[
-        bool, typer.Option("--paired", help="Also judge the differences from the specimen's own healthy record.")
-    ] = False,
-    out: Annotated[
+    reference: Annotated[
         Path | None,
         typer.Option(
-            "--out", "-o", metavar="DIR2", help="Folder for the report. Default: DIR_audit.", show_default=False
+            metavar="FOLDER",
+            help="Compare with your own healthy recordings: one file or one subfolder each, 4 or more for a verdict. "
+            "Each must state its sampling rate.",
+            show_default=False,
         ),
     ] = None,
     indicator: OwnIndicators = None,
-    realism: RealismOptions,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the permutations, the folds and the bootstrap.")] = 0,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", metavar="DIR", help="Folder, SET_audit unless told.", show_default=False),
+    ] = None,
+    seed: Seed = 0,
+    as_json: AsJson = False,
 ) -> None:
     """Check whether scores on a set measure the damage, and write audit.html and audit.json.
 
-    A trap is a property of the set that makes scores meaningless.
+    A trap is a property of the set that makes scores meaningless. Healthy records are compared with the ranges of
+    measured healthy gearboxes.
 
     Exit codes: 0 done, 2 no finished set, 4 with --strict if a trap was found or gearboxes are too few to tell.
 
-    Example: siggen-diagnostics audit runs/quickstart --strict --realism
+    Example: siggen-diagnostics audit runs/quickstart --strict
     """
+    import json
+
     from diagnostics.audit.audit_page import audit_summary
     from diagnostics.audit.audit_report import AuditOptions, audit_set, write_audit
     from diagnostics.base.beside import beside
@@ -89,25 +64,17 @@ def audit(
     own = load_indicators(indicator)
     dataset = open_set(directory)
     refuse_lives(dataset)
-    folder = out or beside(dataset.path, "_audit")
-    wanted = AuditOptions(
-        seed=seed,
-        paired=paired,
-        with_realism=realism.realism,
-        speed=realism.speed.value,
-        reference=realism.reference,
-        reference_fs_hz=realism.reference_fs,
-    )
-    found = audit_set(dataset, wanted, own, terminal_stage)
-    for sentence in audit_summary(found):
-        echo(sentence)
-    for finding in found.findings:
-        echo(f"- {finding.line()}")
+    found = audit_set(dataset, AuditOptions(seed, reference), own, terminal_stage)
+    with terminal_stage("page", 1):
+        page = write_audit(found, dataset, out or beside(dataset.path, "_audit"))
+    if as_json:
+        echo_json(json.loads((page.parent / "audit.json").read_text(encoding="utf-8")))
+    else:
+        for sentence in (*audit_summary(found), *(f"- {finding.line()}" for finding in found.findings)):
+            echo(sentence)
     for note in found.notes:
         echo(f"note: {note}", err=True)
-    with terminal_stage("page", 1):
-        page = write_audit(found, dataset, folder)
-    echo(str(page))
+    echo(str(page), err=as_json)
     if strict and found.findings:
         raise VerificationError(f"{directory}: {counted(len(found.findings), 'trap')} found (--strict)")
     if strict and found.tells_too_little:

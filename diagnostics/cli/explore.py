@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,7 +12,7 @@ import typer
 from diagnostics.base.beside import beside as path_beside
 from diagnostics.base.progress import Stage
 from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows
-from diagnostics.cli.set_options import AmountOptions, Open, OwnIndicators, opened
+from diagnostics.cli.set_options import Open, opened
 from siggen.cli.echo import echo
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
@@ -20,8 +20,10 @@ from siggen.errors import UsageError
 if TYPE_CHECKING:
     from diagnostics.explore.measured_page import ShownRecording
     from diagnostics.machine.recording_indicators import RecordingIndicators
+    from diagnostics.prediction.released_model import ReleasedModel
     from diagnostics.recordings.taken import RecordingFacts
     from siggen.columns.drivetrain import GearTrain
+    from siggen.dataset.reading import Dataset
 
 MACHINE_FILE = "machine.json"
 """What the folder of a machine holds; its reader is slow to import."""
@@ -56,18 +58,15 @@ def of_machine(folder: Path, said: Sequence[str], stage: Stage) -> list[ShownRec
 
 def of_files(
     said: Sequence[str],
-    healthy: Sequence[str],
     train: GearTrain,
     facts: RecordingFacts,
     speed_range_hz: tuple[float, float] | None,
     stage: Stage,
 ) -> list[ShownRecording]:
-    """Return recordings that the user describes; those of `healthy` are the references."""
-    from diagnostics.explore.measured_page import REFERENCE, UNKNOWN
+    """Return recordings that the user describes."""
+    from diagnostics.explore.measured_page import UNKNOWN
 
-    references = _read(healthy, train, facts, speed_range_hz, stage)
-    others = _read(said, train, facts, speed_range_hz, stage)
-    return [*(_shown(one, REFERENCE, None) for one in references), *(_shown(one, UNKNOWN, None) for one in others)]
+    return [_shown(one, UNKNOWN, None) for one in _read(said, train, facts, speed_range_hz, stage)]
 
 
 def _shown(found: RecordingIndicators, verdict: str, load: float | None) -> ShownRecording:
@@ -97,48 +96,14 @@ def _read(
     return found
 
 
-@dataclass(frozen=True, slots=True)
-class SetOptions:
-    """For sets only."""
-
-    model: Annotated[
-        Path | None,
-        typer.Option(
-            "--model",
-            metavar="MODEL",
-            help="Folder of `report`: shows what its logistic regression names every record.",
-            show_default=False,
-        ),
-    ] = None
-    indicator: OwnIndicators = None
-
-
-@dataclass(frozen=True, slots=True)
-class BesideOptions:
-    """For recordings only."""
-
-    beside: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="SET",
-            help="A finished set, such as one that `calibrate` led to: recordings and its records on one page, laid "
-            "over each other.",
-            show_default=False,
-        ),
-    ] = None
-    healthy: Annotated[
-        list[str] | None,
-        typer.Option(metavar="FILE", help="A healthy recording to lay others over. May be given several times."),
-    ] = None
-
-
 @grouped
 def explore(
     targets: Annotated[
         list[str],
         typer.Argument(
-            metavar="DIR | MACHINE RECORDING... | RECORDING...",
-            help="Folder or s3://... of a finished set; the folder that `baseline` wrote, with recordings; recordings.",
+            metavar="SET | [MACHINE] RECORDING... [SET]",
+            help="Folder or s3://... of a finished set; or recordings, behind the folder that `baseline` wrote. A set "
+            "behind them, such as one that `calibrate` led to, is laid over them.",
             show_default=False,
         ),
     ],
@@ -153,88 +118,89 @@ def explore(
             show_default=False,
         ),
     ] = None,
+    full: Annotated[bool, typer.Option("--full", help="Keep every sample, up to 30 MB of them.")] = False,
     show: Open = False,
-    amount: AmountOptions,
-    of_set: SetOptions,
-    compared: BesideOptions,
     gears: GearOptions,
     recording: RecordingOptions,
 ) -> None:
     """Look at recordings, or at the records of a set at once: the page of `report` without its judgement.
 
-    It opens from disk, without a network. The folder of a machine knows how its recordings are read.
+    It opens from disk, without a network. What `report` wrote beside a set (SET_report) names its records. The folder
+    of a machine knows how its recordings are read, and which of them are healthy.
 
-    Example: siggen-diagnostics explore runs/quickstart --model runs/quickstart_report --open
+    Example: siggen-diagnostics explore runs/quickstart --open
 
-    Example: siggen-diagnostics explore rig january.csv february.csv august.csv --beside runs/mine
+    Example: siggen-diagnostics explore rig january.csv february.csv august.csv runs/mine
     """
     first = Path(targets[0])
     if out and out.is_dir():
         raise UsageError(f"--out {out}: received a folder; allowed is the name of a file, such as {out / 'set.html'}")
     if (first / MACHINE_FILE).is_file() or gears.given or file_rows(targets[0])[0][0].is_file():
-        _refuse_set_options(of_set)
         place = first.with_suffix("") if first.is_file() else first
-        page = out or path_beside(place, "_explore.html")
-        path = _recordings_page(targets, (gears, recording), page, compared, amount)
-    elif compared.beside is not None:
-        raise UsageError(f"--beside {compared.beside}: for recordings only; name them before it, or leave it out")
+        path = _recordings_page(targets, (gears, recording), out or path_beside(place, "_explore.html"), full)
     elif len(targets) > 1:
         raise UsageError(f"{targets[1]}: a second argument after the folder {first}; allowed: one set at a time")
     else:
-        path = _set_page(first, out, amount, of_set)
+        path = _set_page(first, out, full)
     echo(str(path))
     if show:
         opened(path)
 
 
-def _refuse_set_options(options: SetOptions) -> None:
-    said = {"--model": options.model, "--indicator": options.indicator}
-    if given := [name for name, value in said.items() if value]:
-        raise UsageError(f"{', '.join(given)}: for sets only; leave them out for recordings")
-
-
-def _set_page(folder: Path, out: Path | None, amount: AmountOptions, of_set: SetOptions) -> Path:
+def _set_page(folder: Path, out: Path | None, full: bool) -> Path:
     """Write the page of a set and return where."""
     from diagnostics.base.progress import terminal_stage
     from diagnostics.explore.set_page import LookOptions, write_set_page
-    from diagnostics.indicators.own_indicator import load_indicators
-    from diagnostics.prediction.released_model import load_model
+    from diagnostics.indicators.workers import fitting_workers
     from diagnostics.report.life_report import lives_of
     from diagnostics.scoring.truth import is_lives
     from siggen.dataset.reading import open as open_set
 
-    own, dataset = load_indicators(of_set.indicator), open_set(folder)
-    model = None if of_set.model is None else load_model(of_set.model, own)
-    options = LookOptions(**asdict(amount), model=model, own=own)
+    dataset = open_set(folder)
+    workers = fitting_workers(dataset.labels(columns=["record_id"]).num_rows)
+    options = LookOptions(full=full, workers=workers, model=None if is_lives(dataset) else _model_beside(dataset))
     adds = lives_of if is_lives(dataset) else None
     return write_set_page(dataset, out or path_beside(dataset.path, "_explore.html"), options, terminal_stage, adds)
 
 
+def _model_beside(dataset: Dataset) -> ReleasedModel | None:
+    """Return what `report` trained on this very set; None without it, or where it needs indicators of the user."""
+    from diagnostics.base.extras import missing_packages
+    from diagnostics.prediction.model_facts import FACTS_FILE
+    from diagnostics.prediction.released_model import load_model
+    from diagnostics.scoring.prediction_file import baselines_beside
+
+    file = baselines_beside(dataset)
+    if file is None or not (file.parent / FACTS_FILE).is_file() or missing_packages("sklearn", "skops"):
+        return None
+    try:
+        return load_model(file.parent)
+    except UsageError as error:
+        echo(f"note: records are not named: {error}", err=True)
+        return None
+
+
 def _recordings_page(
-    targets: list[str],
-    described: tuple[GearOptions, RecordingOptions],
-    path: Path,
-    compared: BesideOptions,
-    amount: AmountOptions,
+    targets: list[str], described: tuple[GearOptions, RecordingOptions], path: Path, full: bool
 ) -> Path:
-    """Write the page of recordings, of a machine or of described files; beside a set where one is named."""
+    """Write the page of recordings, of a machine or of described files; beside a set where one is named last."""
     from diagnostics.base.progress import terminal_stage
     from diagnostics.explore.measured_page import write_recordings_page
 
-    folder, healthy = Path(targets[0]), compared.healthy or []
+    is_set = len(targets) > 1 and (targets[-1].startswith("s3://") or (Path(targets[-1]) / "manifest.json").is_file())
+    folder, files, beside = Path(targets[0]), targets[:-1] if is_set else targets, targets[-1] if is_set else None
     if folder.is_dir():
-        shown = of_machine(folder, [*targets[1:], *healthy], terminal_stage)
+        shown = of_machine(folder, files[1:], terminal_stage)
         name = folder.resolve().name
     else:
         gears, said = described
-        train = gears.train(f"{targets[0]}: teeth unknown")
-        shown = of_files(targets, healthy, train, said.facts(), said.speed_range_hz(), terminal_stage)
-        name = ", ".join(Path(target).name for target in targets[:3])
-    if compared.beside is None:
-        return write_recordings_page(name, shown, path, full=amount.full, stage=terminal_stage)
+        train = gears.train(f"{files[0]}: teeth unknown")
+        shown = of_files(files, train, said.facts(), said.speed_range_hz(), terminal_stage)
+        name = ", ".join(Path(target).name for target in files[:3])
+    if beside is None:
+        return write_recordings_page(name, shown, path, full=full, stage=terminal_stage)
     from diagnostics.explore.beside_page import write_beside_page
     from diagnostics.explore.set_page import LookOptions
     from siggen.dataset.reading import open as open_set
 
-    options = LookOptions(**asdict(amount))
-    return write_beside_page(name, shown, open_set(compared.beside), path, options, terminal_stage)
+    return write_beside_page(name, shown, open_set(beside), path, LookOptions(full=full), terminal_stage)

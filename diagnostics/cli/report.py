@@ -4,45 +4,75 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from diagnostics.cli.set_options import OwnIndicators, ReportOptions, Seed, TrainingOptions, opened
+from diagnostics.cli.set_options import Open, OwnIndicators, Seed, opened
 from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
 
-if TYPE_CHECKING:
-    from diagnostics.indicators.own_indicator import OwnIndicator
-    from diagnostics.judging.of_split import NetworkOptions
-    from siggen.dataset.reading import Dataset
+
+@dataclass(frozen=True, slots=True)
+class TrainingOptions:
+    """How classifiers are trained and judged."""
+
+    test: Annotated[
+        Path | None,
+        typer.Option(
+            "--test",
+            metavar="SET2",
+            help="Judge the classifiers on this set too. It needs the same channels (see --channel) and rate, and a "
+            "damage in common; of its other states it is said whether they are found.",
+            show_default=False,
+        ),
+    ] = None
+    channel: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--channel", metavar="NAME", help="Use this channel only. May be given several times.", show_default=False
+        ),
+    ] = None
+    cnn: Annotated[bool, typer.Option("--cnn/--no-cnn", help="Train the networks too.")] = True
+    device: Annotated[str, typer.Option("--device", metavar="cpu|cuda", help="Where to train the networks.")] = "cpu"
+    classes: Annotated[
+        str,
+        typer.Option(
+            "--classes",
+            metavar="state|fault",
+            help="What a class is: the state of a record, or its primary fault. Healthy ones are one class.",
+        ),
+    ] = "state"
+    predictions: Annotated[
+        Path | None,
+        typer.Option(
+            "--predictions",
+            metavar="FILE",
+            help="Your own predictions, as `score` takes them: their scores stand on the page beside the classifiers'.",
+            show_default=False,
+        ),
+    ] = None
 
 
 @grouped
 def report(
     directory: Annotated[
-        Path, typer.Argument(metavar="DIR", help="Folder or s3://... of a finished set.", show_default=False)
+        Path, typer.Argument(metavar="SET", help="Folder or s3://... of a finished set.", show_default=False)
     ],
     *,
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out",
-            "-o",
-            metavar="DIR2",
-            help="Folder for the report, DIR_report unless told.",
-            show_default=False,
+            "--out", "-o", metavar="DIR", help="Folder for the report, SET_report unless told.", show_default=False
         ),
     ] = None,
-    models_only: Annotated[
-        bool, typer.Option("--models-only", help="Write models and metrics.json alone; DIR_models unless told.")
-    ] = False,
     indicator: OwnIndicators = None,
     training: TrainingOptions,
-    pages: ReportOptions,
+    show: Open = False,
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
@@ -52,25 +82,20 @@ def report(
     gearboxes that run to failure it says how well baselines tell their remaining life. Beside it lie metrics.json,
     evaluation.csv with all indicators, figures and models.
 
-    Example: siggen-diagnostics report runs/quickstart
+    Example: siggen-diagnostics report runs/quickstart --open
 
-    Example: siggen-diagnostics report runs/quickstart --models-only --out models --test runs/other_gears
+    Example: siggen-diagnostics report runs/quickstart --no-cnn --test runs/other_gears --out runs/both
     """
-    if models_only:
-        of_page = {"--open": pages.show, "--predictions": pages.predictions, "--state": pages.state}
-        _refuse(of_page, "--models-only writes no page")
     from diagnostics.base.beside import beside
-    from diagnostics.base.extras import missing_packages, require_packages
+    from diagnostics.base.extras import missing_packages
     from diagnostics.base.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
-
-    if models_only:
-        require_packages("training", "sklearn", "skops", *(("torch", "safetensors") if training.cnn else ()))
-    from diagnostics.explore.set_page import LookOptions
+    from diagnostics.indicators.workers import fitting_workers
     from diagnostics.judging.of_split import NetworkOptions, check_device
     from diagnostics.judging.sets import open_sets
     from diagnostics.records.record_classes import check_kind
     from diagnostics.report.life_report import write_life_report
+    from diagnostics.report.report import PageOptions, write_report
     from diagnostics.scoring.truth import is_lives
 
     if training.cnn and not missing_packages("torch"):
@@ -78,85 +103,28 @@ def report(
     own = load_indicators(indicator)
     classes = check_kind(training.classes, "--classes")
     dataset, second = open_sets(directory, training.test, training.channel or (), classes)
-    options = NetworkOptions(training.cnn, training.device, training.augment, classes)
+    folder = out or beside(dataset.path, "_report")
     if is_lives(dataset):
-        of_states = {"--models-only": models_only, "--test": second}
-        of_pages = {"--predictions": pages.predictions, "--state": pages.state}
-        _refuse({**of_states, "--indicator": own, **of_pages}, "for sets of states; this one has lives")
-        folder = out or beside(dataset.path, "_report")
-        amount = LookOptions(pages.limit, pages.full, workers=pages.workers)
-        path = write_life_report(dataset, folder, seed, terminal_stage, network=training.cnn, amount=amount)
+        _refuse({"--test": second, "--indicator": own, "--predictions": training.predictions})
+        path = write_life_report(dataset, folder, seed, terminal_stage, network=training.cnn)
     else:
-        folder = out or beside(dataset.path, "_models" if models_only else "_report")
-        if models_only:
-            path = _models((dataset, second), folder, seed, options, own)
-        else:
-            path = _page((dataset, second), folder, seed, options, own, pages)
-            metrics = json.loads((path.parent / "metrics.json").read_text(encoding="utf-8"))
-            echo(metrics["headline"], err=True)
+        network = NetworkOptions(training.cnn, training.device, classes=classes)
+        records = dataset.labels(columns=["record_id"]).num_rows
+        page = PageOptions(predictions=training.predictions, workers=fitting_workers(records))
+        path = write_report(
+            dataset, folder, seed, network=network, other=second, own=own, page=page, stage=terminal_stage
+        )
+    metrics = json.loads((path.parent / "metrics.json").read_text(encoding="utf-8"))
+    if headline := metrics.get("headline"):
+        echo(headline, err=True)
     if as_json:
-        echo_json(json.loads(((path if models_only else path.parent) / "metrics.json").read_text(encoding="utf-8")))
+        echo_json(metrics)
     else:
         echo(str(path))
-    if pages.show:
+    if show:
         opened(path)
 
 
-def _refuse(given: Mapping[str, object], why: str) -> None:
+def _refuse(given: Mapping[str, object]) -> None:
     if wrong := [name for name, said in given.items() if said]:
-        raise UsageError(f"{', '.join(wrong)}: {why}; leave out one or the other")
-
-
-def _page(
-    sets: tuple[Dataset, Dataset | None],
-    folder: Path,
-    seed: int,
-    options: NetworkOptions,
-    own: tuple[OwnIndicator, ...],
-    pages: ReportOptions,
-) -> Path:
-    """Write the report and return its path."""
-    from diagnostics.base.progress import terminal_stage
-    from diagnostics.report.report import PageOptions, write_report
-
-    dataset, second = sets
-    page = PageOptions(
-        predictions=pages.predictions,
-        states=pages.state or (),
-        limit=pages.limit,
-        full=pages.full,
-        workers=pages.workers,
-    )
-    return write_report(dataset, folder, seed, network=options, other=second, own=own, page=page, stage=terminal_stage)
-
-
-def _models(
-    sets: tuple[Dataset, Dataset | None],
-    folder: Path,
-    seed: int,
-    options: NetworkOptions,
-    own: tuple[OwnIndicator, ...],
-) -> Path:
-    """Train, and write the models and what they reach; return their folder."""
-    from diagnostics.base.progress import terminal_stage
-    from diagnostics.judging.of_split import train_models, training_metrics
-    from diagnostics.judging.sets import other_table, set_table
-    from diagnostics.prediction.saved_models import class_text, save_models
-    from siggen.errors import DatasetError
-    from siggen.file_writing import write_file
-
-    dataset, second = sets
-    table = set_table(dataset, terminal_stage, own=own)
-    other = other_table(second, terminal_stage, own) if second else None
-    try:
-        trained = train_models(dataset, table, seed, network=options, other=other, stage=terminal_stage)
-    except DatasetError as error:
-        raise DatasetError(f"{dataset.path}: {error}") from error
-    with terminal_stage("saving the models", 1):
-        notes = save_models(trained, table, dataset, folder)
-    metrics = {**training_metrics(trained), "seed": seed, "file_notes": notes}
-    write_file(folder / "metrics.json", json.dumps(metrics, indent=1, allow_nan=False) + "\n")
-    echo(class_text(trained.split, dataset), err=True)
-    for note in (*trained.notes, *notes):
-        echo(f"note: {note}", err=True)
-    return folder
+        raise UsageError(f"{', '.join(wrong)}: for sets of states; this one has lives; leave out one or the other")

@@ -2,35 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from diagnostics.cli.set_options import Classes, Seed
+from diagnostics.cli.set_options import Seed
 from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
-from siggen.cli.option_groups import grouped
 
 
-@dataclass(frozen=True, slots=True)
-class JudgedOptions:
-    """What predictions are judged by."""
-
-    labels: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="Sealed labels of a benchmark; those revealed, else SET_secret/sealed.json unless told.",
-            show_default=False,
-        ),
-    ] = None
-    split: Annotated[str, typer.Option(metavar="test|validation", help="Whose records are judged.")] = "test"
-    classes: Classes = "state"
-
-
-@grouped
 def score(
     directory: Annotated[
         Path,
@@ -39,65 +20,78 @@ def score(
         ),
     ],
     predictions: Annotated[
-        Path,
+        list[Path],
         typer.Argument(
-            metavar="FILE",
+            metavar="FILE...",
             help="Predictions, .parquet or .csv: record_id, and the columns of a task: damage (a number that rises "
             "with damage), p_CLASS of every class or class, gear and tooth, area_mm2, rul_h, confidence.",
             show_default=False,
         ),
     ],
     *,
-    baselines: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="DIR",
-            help="Folder that `report` wrote: its classifiers are judged on the same records. SET_report or SET_models "
-            "unless told.",
-            show_default=False,
-        ),
-    ] = None,
     out: Annotated[
         Path | None, typer.Option("--out", "-o", metavar="TABLE", help="Write the rows too, .parquet or .csv.")
     ] = None,
-    judged: JudgedOptions,
+    labels: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Sealed labels of a benchmark; those revealed, else SET_secret/sealed.json unless told.",
+            show_default=False,
+        ),
+    ] = None,
+    split: Annotated[str, typer.Option(metavar="test|validation", help="Whose records are judged.")] = "test",
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
-    """Judge the predictions of your own classifier, with limits over gearboxes.
+    """Judge the predictions of your own classifiers, with limits over gearboxes; the last line says what they mean.
 
-    Missing, doubled and unknown records and values that cannot be are refused in one list. Of a benchmark every test
-    part is judged that the predictions have rows for.
+    What `report` wrote beside the set (SET_report) is judged on the same records. Missing, doubled and unknown records
+    and values that cannot be are refused in one list. Of a benchmark every test part is judged that the predictions
+    have rows for.
 
     Example: siggen-diagnostics score runs/quickstart mine.parquet
+
+    Example: siggen-diagnostics score runs/bench_tiny mine.parquet theirs.csv --out scores.csv
     """
+    import pyarrow as pa
+
     from diagnostics.indicators.classifier_table import check_suffix, write_table
     from diagnostics.scoring.benchmark import is_benchmark, open_benchmark
-    from diagnostics.scoring.benchmark_scores import BenchmarkScores, score_benchmark
-    from diagnostics.scoring.score import Scores
+    from diagnostics.scoring.benchmark_scores import score_benchmark
     from diagnostics.scoring.score import score as scored
     from siggen.dataset.reading import open as open_set
     from siggen.errors import UsageError
 
     if out:
         check_suffix(out)
-    found: Scores | BenchmarkScores
     sealed = is_benchmark(directory)
-    if sealed and (judged.split, judged.classes) != ("test", "state"):
-        raise UsageError("--split, --classes: of a benchmark the split test is judged by states; leave them out")
-    if judged.labels and not sealed:
+    if sealed and split != "test":
+        raise UsageError(f"--split {split}: of a benchmark the split test is judged; leave it out")
+    if labels and not sealed:
         raise UsageError(f"--labels: {directory} is no benchmark and has its own labels; leave --labels out")
     if sealed:
-        found = score_benchmark(
-            open_benchmark(directory), predictions, labels=judged.labels, baselines=baselines, seed=seed
+        benchmark = open_benchmark(directory)
+        parts = {file: score_benchmark(benchmark, file, labels=labels, seed=seed) for file in predictions}
+        tables, numbers = [one.to_table() for one in parts.values()], [one.numbers() for one in parts.values()]
+        told = list(map(str, parts.values()))
+    else:
+        dataset = open_set(directory)
+        found = [scored(dataset, file, split=split, seed=seed) for file in predictions]
+        tables, numbers, told = (
+            [one.to_table() for one in found],
+            [one.numbers() for one in found],
+            list(map(str, found)),
         )
-    else:
-        own = {"split": judged.split, "classes": judged.classes}
-        found = scored(open_set(directory), predictions, baselines=baselines, seed=seed, **own)
     if as_json:
-        echo_json({"split": judged.split, "classes": judged.classes, "scores": found.numbers()})
+        echo_json({"split": split, "scores": [row for rows in numbers for row in rows]})
     else:
-        echo(str(found))
+        for file, text in zip(predictions, told, strict=True):
+            echo(f"{file}\n{text}" if len(predictions) > 1 else text)
     if out:
-        write_table(found.to_table(), out)
+        named = [
+            table.append_column("file", pa.array([str(file)] * table.num_rows)) if len(predictions) > 1 else table
+            for file, table in zip(predictions, tables, strict=True)
+        ]
+        write_table(pa.concat_tables(named), out)
         echo(str(out), err=as_json)

@@ -94,7 +94,7 @@ def channel_mapping(measured: PageSource, simulated: PageSource) -> dict[str, st
         return {name: name for name in measured.channels}
     if len(measured.channels) != len(simulated.channels):
         raise UsageError(
-            f"--beside: the recordings have the channels {', '.join(measured.channels)}, the set "
+            f"set beside: recordings have the channels {', '.join(measured.channels)}, the set "
             f"{', '.join(simulated.channels)}; allowed: as many on both sides. Choose with --channel NAME=COLUMN"
         )
     return dict(zip(measured.channels, simulated.channels, strict=True))
@@ -104,7 +104,7 @@ def _check_alike(measured: PageSource, simulated: PageSource) -> None:
     rates = measured.fs_hz, simulated.fs_hz
     if abs(rates[0] / rates[1] - 1.0) > 1e-6:
         raise UsageError(
-            f"--beside: the recordings have {rates[0]:g} Hz, the set {rates[1]:g} Hz; allowed: one rate. Generate the "
+            f"set beside: recordings have {rates[0]:g} Hz, the set {rates[1]:g} Hz; allowed: one rate. Generate the "
             f"set again: siggen generate CONFIG --set fs_hz={rates[0]:g}"
         )
     teeth = [
@@ -112,7 +112,7 @@ def _check_alike(measured: PageSource, simulated: PageSource) -> None:
     ]
     if not teeth[0] <= teeth[1]:
         said = [", ".join(":".join(map(str, pair)) for pair in sorted(side)) for side in teeth]
-        raise UsageError(f"--beside: the recordings are of {said[0]} teeth, the set of {said[1]}; allowed: the same")
+        raise UsageError(f"set beside: recordings are of {said[0]} teeth, the set of {said[1]}; allowed: the same")
 
 
 def _labels(measured: PageSource, simulated: PageSource, first: int) -> dict[str, np.ndarray]:

@@ -170,7 +170,7 @@ def missing_sentences(healthy: int) -> list[str]:
     if healthy == 0:
         found.append(
             f"No recording is known to be a {REFERENCE}: nothing is laid over, and an indicator has no place among "
-            "healthy ones. Give `--healthy FILE`, or the recordings of `baseline` too."
+            "healthy ones. Name the folder of `baseline` first, and its recordings too."
         )
     elif healthy < 3:
         found.append("Fewer than three healthy recordings: an indicator has no place among them.")

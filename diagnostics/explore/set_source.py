@@ -57,8 +57,8 @@ def missing_parts(
         )
     if not named:
         found.append(
-            "No model: the page does not say what a classifier names each record. `siggen-diagnostics explore --model` "
-            "takes the folder that `report` wrote."
+            "No model: the page does not say what a classifier names each record. `siggen-diagnostics report` "
+            "trains one, which `explore` then finds beside the set."
         )
     return found
 

@@ -135,7 +135,7 @@ def ranking_table(
         raise DatasetError(
             f"{dataset.path}: {len(problems)} problems among {rows.size} records\n{problem_list(problems)}\n"
             f"{duration_advice(dataset, table.settings.frame_samples)}"
-            "Mend them; `siggen-diagnostics indicators --leave-out` does without these records and channels."
+            "Mend them; `siggen-diagnostics indicators` does without these records and channels."
         )
     labels |= _more_labels(dataset, labels["record_id"], table.channels)
     names = table.names()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future
@@ -13,7 +14,14 @@ from diagnostics.base.process_pool import process_pool
 from diagnostics.records.recording import Recording
 
 CHUNK_RECORDS = 8
+WORTH_A_PROCESS = 200
+"""Records that take longer than a process takes to begin."""
 Result = TypeVar("Result")
+
+
+def fitting_workers(records: int) -> int:
+    """Return how many processes so many records are worth, at most one per core."""
+    return max(1, min(os.cpu_count() or 1, records // WORTH_A_PROCESS))
 
 
 def mapped(records: Iterable[Recording], function: Callable[[Recording], Result], workers: int = 1) -> Iterator[Result]:

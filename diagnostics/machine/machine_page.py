@@ -76,7 +76,7 @@ def _look(folder: Path, checks: Sequence[Check]) -> str:
     files = " ".join(dict.fromkeys(check.recording.partition(":")[0] for check in checks))
     return (
         f"The recordings themselves, over healthy ones: `siggen-diagnostics explore {folder.name} {files}` with the "
-        "files of healthy recordings. `--beside SET` adds a simulated set of this machine (`calibrate`)."
+        "files of healthy recordings. A set behind them, which `calibrate` led to, is laid over them."
     )
 
 

@@ -84,7 +84,7 @@ def check_files(folder: Path, hashes: Mapping[str, str]) -> None:
         raise UsageError(
             f"{folder}: {', '.join(changed)} not as {FACTS_FILE} promises (SHA-256 differs): damaged, changed, or of "
             "another model. The files of a model are written together; copy the folder as a whole or train again: "
-            f"siggen-diagnostics report SET --models-only --out {folder}"
+            f"siggen-diagnostics report SET --out {folder}"
         )
 
 
@@ -282,7 +282,7 @@ def _content(path: Path) -> dict[str, Any]:
     if found != FORMAT:
         raise UsageError(
             f"{path}: received format {found!r}; allowed is {FORMAT!r}, which says what gears and meshes are "
-            f"called. Train again: siggen-diagnostics report SET --models-only --out {path.parent}"
+            f"called. Train again: siggen-diagnostics report SET --out {path.parent}"
         )
     return unsealed_text(text)
 

@@ -105,7 +105,7 @@ def check_size(folder: Path, file: str, classifier: FeatureClassifier) -> None:
 def _foreign(folder: Path, file: str, what: str, differences: list[str]) -> UsageError:
     return UsageError(
         f"{folder / file}: {what} ({'; '.join(differences)}). The files of a model are written together; copy the "
-        f"folder as a whole or train again: siggen-diagnostics report SET --models-only --out {folder}"
+        f"folder as a whole or train again: siggen-diagnostics report SET --out {folder}"
     )
 
 
@@ -253,7 +253,7 @@ def _own_of(
     if missing := [name for name in wanted if name not in given]:
         raise UsageError(
             f"{folder}: was trained with your own indicators {', '.join(missing)}, which are not part of a model; give "
-            f"{' '.join(f'--indicator MODULE:{name}' for name in missing)}"
+            "`siggen-diagnostics predict --indicator MODULE:NAME` for each"
         )
     return tuple(given[name] for name in wanted)
 

@@ -320,7 +320,7 @@ def _way_out(dataset: Dataset, found: dict[tuple[str, str], list[int]], can_leav
         return f"Leave the channel out: siggen-diagnostics report {' '.join(f'--channel {name}' for name in usable)}"
     return (
         f"`siggen verify {dataset.path}` tells whether files were changed; else mend the set's config.yaml and "
-        "generate it into a new folder. `siggen-diagnostics indicators --leave-out` does without such records."
+        "generate it into a new folder. `siggen-diagnostics indicators` does without such records."
     )
 
 

@@ -646,7 +646,7 @@ def kind_notes(dataset: Dataset, damaged: Sequence[str]) -> list[str]:
     listed = "; ".join(f"{kind}: {', '.join(members)}" for kind, members in kinds.items())
     return [
         f"The damaged states are of {len(kinds)} kinds ({listed}). Sizes, trends and NA4 are meaningful within one "
-        "kind only. To judge the states of one kind, give --state NAME once for each."
+        "kind only. To judge one kind, generate a set with the states of that kind."
     ]
 
 

@@ -100,12 +100,12 @@ def open_benchmark(path: Path | str) -> Benchmark:
     """
     path = Path(path)
     if not is_benchmark(path):
-        raise UsageError(f"{path}: holds no {FACTS}; allowed: a folder that `siggen-diagnostics bench make` wrote")
+        raise UsageError(f"{path}: holds no {FACTS}; allowed: a folder that `diagnostics.make_benchmark` wrote")
     facts = _json(path / FACTS)
     try:
         title, tier, parts = str(facts["title"]), str(facts["tier"]), tuple(map(str, facts["parts"]))
     except (KeyError, TypeError) as error:
-        raise UsageError(f"{path / FACTS}: is not what `bench make` writes ({error}); fetch it again") from error
+        raise UsageError(f"{path / FACTS}: is not what `make_benchmark` writes ({error}); fetch it again") from error
     if wrong := [name for name in parts if not NAME.fullmatch(name)]:
         raise UsageError(f"{path / FACTS}: received the part {wrong[0]!r}; allowed: lower-case letters, digits, _")
     found = benchmark_facts(path, title, tier, parts)
@@ -215,7 +215,7 @@ def labels_of(benchmark: Benchmark, file: Path | None) -> SealedLabels:
     if chosen is None:
         raise UsageError(
             f"{benchmark.path}: its labels are not revealed, and {own} is not there; its maker names the file with "
-            "--labels, others wait for `bench reveal`"
+            "--labels, others wait for `diagnostics.reveal_benchmark`"
         )
     found = read_labels(chosen)
     ours = (benchmark.digest, benchmark.simulation_version)

@@ -21,13 +21,14 @@ import pyarrow.compute as pc
 
 from diagnostics.base.beside import beside
 from diagnostics.base.reading_process import read_apart
-from diagnostics.records.record_classes import STATE
+from diagnostics.records.record_classes import FAULT, STATE, set_classes
+from diagnostics.records.state_classes import CLASS
 from diagnostics.scoring.grade import PROBABILITY
 from diagnostics.scoring.prediction_reading import keep_table, kept_table
 from diagnostics.scoring.remaining_life import RUL
 from diagnostics.scoring.size import AREA
 from diagnostics.scoring.tasks import TASKS
-from diagnostics.scoring.truth import Truth
+from diagnostics.scoring.truth import Truth, is_lives
 from diagnostics.statistics.evaluation import Predictions
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, counted
@@ -271,6 +272,20 @@ def check_identity(table: pa.Table, identity: str, where: Any) -> None:
         )
 
 
+def named_kind(table: pa.Table, dataset: Dataset) -> str:
+    """Return what a class of predictions is: what they say, or faults where their columns name no states but those."""
+    said = (table.schema.metadata or {}).get(KIND_KEY)
+    if said in (STATE.encode(), FAULT.encode()):
+        return str(said.decode())
+    if is_lives(dataset):
+        return STATE
+    named = {name.removeprefix(PROBABILITY) for name in table.column_names if name.startswith(PROBABILITY)}
+    if CLASS in table.column_names and pa.types.is_string(table.column(CLASS).type):
+        named |= {str(name) for name in pc.unique(table.column(CLASS)).to_pylist()}
+    states, faults = (set(set_classes(dataset, kind).names) for kind in (STATE, FAULT))
+    return FAULT if named and named <= faults and not named <= states else STATE
+
+
 def check_classes(table: pa.Table, kind: str, where: Any) -> None:
     """Check that predictions which say what their classes are mean the same by a class.
 
@@ -281,4 +296,4 @@ def check_classes(table: pa.Table, kind: str, where: Any) -> None:
     """
     named = (table.schema.metadata or {}).get(KIND_KEY, kind.encode()).decode(errors="replace")
     if named != kind:
-        raise UsageError(f"{where}: its classes are {named}s; asked for were {kind}s. Give --classes {named}")
+        raise UsageError(f"{where}: its classes are {named}s; asked for were {kind}s. Judge them by those")

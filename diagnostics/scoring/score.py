@@ -25,6 +25,7 @@ from diagnostics.scoring.prediction_file import (
     check_classes,
     check_identity,
     matched_columns,
+    named_kind,
     prediction_table,
 )
 from diagnostics.scoring.score_rows import ScoreRow, score_figure
@@ -143,7 +144,7 @@ def score(
     baselines: str | Path | None = None,
     split: str = TEST,
     seed: int = 0,
-    classes: str = STATE,
+    classes: str | None = None,
 ) -> Scores:
     """Judge predictions for the records of a split by every task that their columns answer.
 
@@ -164,8 +165,8 @@ def score(
         `test`, or `validation` to choose by.
     seed : int
         Of the resampled gearboxes; 0 gives the numbers of the report.
-    classes : str
-        What a class is: `state`, or primary `fault`; healthy ones are one class.
+    classes : str, optional
+        What a class is: `state`, or primary `fault`; healthy ones are one class. Default: what the columns name.
 
     Returns
     -------
@@ -177,9 +178,10 @@ def score(
     UsageError
         If records are missing, come twice or are unknown, or values cannot be; all of it in one message.
     """
-    truth, identity = truth_of(dataset, split, classes), str(dataset.manifest["identity"])
+    table, identity = prediction_table(predictions), str(dataset.manifest["identity"])
+    truth = truth_of(dataset, split, classes or named_kind(table, dataset))
     where = predictions if isinstance(predictions, str | Path) else "predictions"
-    columns = _by_classifier(prediction_table(predictions), truth, identity, where, YOURS)
+    columns = _by_classifier(table, truth, identity, where, YOURS)
     first = next(iter(columns))
     file = baselines_beside(dataset) if baselines is None else baselines_file(Path(baselines))
     if file is not None:

@@ -106,8 +106,7 @@ def audited(folder: str, raw: dict[str, Any], workers: int) -> dict[str, dict[st
         print(f"making {path}", file=sys.stderr)
         siggen.generate(siggen.load_config(raw), path, workers=workers)
     if not (out / "audit.json").exists():
-        speed = "variable" if folder == "industrial" else "bench"
-        run(f"siggen-diagnostics audit {path} --paired --realism --speed {speed} --out {out}")
+        run(f"siggen-diagnostics audit {path} --out {out}")
     found = json.loads((out / "audit.json").read_text(encoding="utf-8"))
     ways = {**found["strongest"], UNPAIRED: found["detectability"][UNPAIRED]}
     failures = siggen.open(path).manifest.get("failures", [])

@@ -31,17 +31,13 @@ SETS = {
 }
 """Commands that make a set, by its folder in runs/; the last one generates it."""
 
-LADDER = " ".join(f"--state through_{size:03d}" for size in (40, 50, 60, 70, 80, 90, 100, 125, 150))
-OPTIONS = {"quickstart": " --limit 5", "bench": f" --no-cnn {LADDER}"}
-"""Networks of bench cost minutes; the page that is kept has one gearbox's signals.
-
-Features of bench are ranked along one ladder of damage. The audit is of quickstart alone.
-"""
+OPTIONS = {"quickstart": ""}
+"""Networks of bench cost minutes. The audit is of quickstart alone."""
 
 REPORTS = {
     name: {
         # the audit first: the report cites it
-        **({f"{name}_audit": ("audit.html", f"audit runs/{name} --realism")} if name == "quickstart" else {}),
+        **({f"{name}_audit": ("audit.html", f"audit runs/{name}")} if name == "quickstart" else {}),
         f"{name}_report": ("report.html", f"report runs/{name}{OPTIONS.get(name, ' --no-cnn')}"),
     }
     for name in SETS

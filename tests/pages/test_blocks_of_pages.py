@@ -33,7 +33,7 @@ NOT_RUN = {
     "docs/understand/baselines.md": ["not run: the same commands run one by one below"],
     "docs/understand/run_to_failure.md": ["not run: minutes", "not run: minutes"],
     "docs/understand/siggen_bench.md": [
-        "not run: simulates for minutes; tests/diagnostics/bench runs the same commands on short records"
+        "not run: simulates for minutes; tests/diagnostics/bench calls the same on short records"
     ],
 }
 """Page -> what no test runs of it, and why. Nothing is added here that a smaller set or a local server could run."""

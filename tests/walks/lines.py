@@ -18,7 +18,7 @@ import yaml
 from _pytest.mark import ParameterSet
 from scipy.io import wavfile
 
-from diagnostics.scoring.benchmark import COMMITMENT, open_benchmark
+from diagnostics.scoring.benchmark import open_benchmark
 from tests.diagnostics.bench.conftest import CONFIG, committed_benchmark
 from tests.publication.conftest import FACTS
 from tests.shared import shared_folder
@@ -67,7 +67,7 @@ LINES = {
     "siggen inspect life": Line("fleet --as-states OUT/gearbox.yaml"),
     "siggen-diagnostics audit": Line("set --out OUT/audit"),
     "siggen-diagnostics indicators": Line(f"may.wav {DESCRIBED} --out OUT/indicators"),
-    "siggen-diagnostics report": Line("set --no-cnn --workers 2 --out OUT/report"),
+    "siggen-diagnostics report": Line("set --no-cnn --out OUT/report"),
     "siggen-diagnostics score": Line("committed entries/mine.csv --out OUT/scores.csv"),
     "siggen-diagnostics predict": Line(
         "models set/data/test-00000.parquet:1 --fs 12800 --teeth 18,47 --tacho tacho_s --out OUT/prediction"
@@ -79,11 +79,6 @@ LINES = {
         "--compared 2 --out OUT/mine.yaml",
     ),
     "siggen-diagnostics explore": Line(f"may.wav june.wav {DESCRIBED} --out OUT/look.html"),
-    "siggen-diagnostics bench make": Line("OUT/new --learn 1 --test 2 --set duration_s=0.1 --workers 1"),
-    "siggen-diagnostics bench commit": Line("IN/bench"),
-    "siggen-diagnostics bench reveal": Line("IN/committed"),
-    "siggen-diagnostics bench baselines": Line("IN/bench"),
-    "siggen-diagnostics bench board": Line("bench entries --out OUT/board"),
 }
 
 
@@ -131,11 +126,6 @@ def _committed(folder: Path, factory: pytest.TempPathFactory) -> None:
     shutil.copytree(source / "hidden", f"{folder}_secret")
 
 
-def _bench(folder: Path, factory: pytest.TempPathFactory) -> None:
-    _committed(folder, factory)
-    (folder / COMMITMENT).unlink()
-
-
 def _entries(folder: Path, factory: pytest.TempPathFactory) -> None:
     """Write a number for each test record of the benchmark, as a classifier would."""
     bench = open_benchmark(committed_benchmark(factory) / "bench")
@@ -161,9 +151,8 @@ MADE: dict[str, str | Callable[[Path, pytest.TempPathFactory], object]] = {
     "part_1": "siggen generate short.yaml --workers 0 --part 1/2 --out part_1",
     "part_2": "siggen generate short.yaml --workers 0 --part 2/2 --out part_2",
     "set": "siggen generate many.yaml --workers 0 --out set",
-    "models": "siggen-diagnostics report set --models-only --no-cnn --out models",
+    "models": "siggen-diagnostics report set --no-cnn --out models",
     "machine": f"siggen-diagnostics baseline april.wav may.wav june.wav july.wav {DESCRIBED} --out machine",
-    "bench": _bench,
     "committed": _committed,
     "entries": _entries,
 }

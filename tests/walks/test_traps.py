@@ -57,7 +57,7 @@ def test_no_command_takes_a_module_from_the_folder(
 @pytest.mark.parametrize(
     "line",
     [
-        "siggen-diagnostics indicators set --workers 2 --out table",
+        "siggen-diagnostics indicators set --out table",
         "siggen-diagnostics explore set --out look.html",
         "siggen generate short.yaml --engine dask --workers 2 --out new",
         "siggen generate short.yaml --engine ray --workers 2 --out new",

@@ -39,8 +39,8 @@ def rig(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def models(rig: Path) -> Path:
-    walk(rig, "siggen-diagnostics report set --models-only --no-cnn --out models")
-    return rig / "models"
+    walk(rig, "siggen-diagnostics report set --no-cnn --out set_report")
+    return rig / "set_report" / "models"
 
 
 def blocks() -> list[str]:
@@ -48,7 +48,8 @@ def blocks() -> list[str]:
     section = PAGE.read_text(encoding="utf-8").split("\n## Your own classifier\n")[1].split("\n## ")[0]
     found = re.findall(r"^```python\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)
     return [
-        block.replace("runs/quickstart", "set").replace("runs/models", "models").replace("runs/", "") for block in found
+        block.replace("runs/quickstart", "set").replace("runs/models", "set_report").replace("runs/", "")
+        for block in found
     ]
 
 
@@ -77,11 +78,11 @@ def test_from_a_set_to_scores_of_own_classifiers_beside_the_baselines(rig: Path,
     (rig / "tree.py").write_text(next(block for block in blocks() if "mine.parquet" in block))
     in_python = walk(rig, "python tree.py")
     assert walk(rig, "siggen-diagnostics score set mine.parquet") == in_python
-    told = printed(rig, "siggen-diagnostics score set mine.parquet --baselines models --out scores.csv")["scores"]
+    told = printed(rig, "siggen-diagnostics score set mine.parquet --out scores.csv")["scores"]
     rows = pyarrow.csv.read_csv(rig / "scores.csv").to_pylist()
     assert {row["name"] for row in rows} == {"yours", "indicators", "boosting", "rms"}
     assert told == rows
-    reported = json.loads((models / "metrics.json").read_text())["classifiers"]
+    reported = json.loads((models.parent / "metrics.json").read_text())["training"]["classifiers"]
     judged = [row for row in rows if row["name"] != "yours" and row["records"] != "sham against healthy"]
     for row in judged:  # a sham is judged by `score` alone
         if row["measure"] in ("AUC", "balanced accuracy", "macro AUROC"):
@@ -151,14 +152,17 @@ def test_from_a_set_to_a_published_folder_that_opens_again(rig: Path) -> None:
 
 
 def test_predict_by_classifiers_on_indicators(rig: Path, models: Path) -> None:
-    said = walk(rig, f"siggen-diagnostics predict models {RECORDING} --out prediction")
+    said = walk(rig, f"siggen-diagnostics predict set_report {RECORDING} --out prediction")
     assert "state" in said
     written = json.loads((rig / "prediction" / "prediction.json").read_text())
-    assert printed(rig, f"siggen-diagnostics predict models {RECORDING}") == {"predictions": [written], "refused": {}}
+    assert printed(rig, f"siggen-diagnostics predict set_report {RECORDING}") == {
+        "predictions": [written],
+        "refused": {},
+    }
 
 
 @pytest.mark.slow  # trains both networks
 def test_predict_by_networks(rig: Path) -> None:
-    walk(rig, "siggen-diagnostics report set --models-only --out all_models")
+    walk(rig, "siggen-diagnostics report set --out all_models")
     said = walk(rig, f"siggen-diagnostics predict all_models {RECORDING} --out by_networks")
     assert "network" in said

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from planted_set import Plant, PlantedSet, planted
+from scipy.io import wavfile
 
 from diagnostics.audit import bank, condition_traps, signal_attackers
 from diagnostics.cli.app import main
@@ -63,9 +64,10 @@ def test_a_clean_set_passes_strict_and_the_report_holds_every_part(
     monkeypatch.setattr(reading, "open", lambda path: clean)
     recordings = tmp_path / "healthy"
     recordings.mkdir()
-    np.save(recordings / "one.npy", np.random.default_rng(1).standard_normal(26_000))
-    given = ("--reference", str(recordings), "--reference-fs", "12800")
-    assert run(monkeypatch, "x", "--out", str(tmp_path), "--strict", "--realism", "--paired", *given) == 0
+    noise = 0.1 * np.random.default_rng(1).standard_normal(26_000)
+    wavfile.write(recordings / "one.wav", 12_800, noise.astype(np.float32))
+    given = ("--reference", str(recordings))
+    assert run(monkeypatch, "x", "--out", str(tmp_path), "--strict", *given) == 0
     assert capsys.readouterr().out.strip().endswith("audit.html")
     page = (tmp_path / "audit.html").read_text()
     for part in (

@@ -36,11 +36,14 @@ def test_thirteen_quantities_count_healthy_channel_records_only(found: MeasuredS
     assert share.quantiles[1] == 3.0
 
 
-def test_speed_range_follows_the_kind_of_machine(found: MeasuredSet) -> None:
-    variation = np.full(found.checksums.shape, 1.0)
-    changed = replace(found, values={**found.values, "speed_variation_percent": variation})
-    shares = {speed: realism(changed, speed).shares[-1].inside for speed in ("bench", "variable")}  # type: ignore[union-attr]
-    assert shares == {"bench": 0.0, "variable": 1.0}
+def test_speeds_of_benches_and_of_variable_machines_are_in_range_and_those_between_are_not(found: MeasuredSet) -> None:
+    shares = {}
+    for percent in (0.02, 0.1, 1.0):
+        variation = np.full(found.checksums.shape, percent)
+        judged = realism(replace(found, values={**found.values, "speed_variation_percent": variation}))
+        assert judged is not None
+        shares[percent] = judged.shares[-1].inside
+    assert shares == {0.02: 1.0, 0.1: 0.0, 1.0: 1.0}
 
 
 def test_spread_between_sensors_is_the_standard_deviation_over_channels(found: MeasuredSet) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.io import wavfile
 
 from diagnostics.audit.reference_comparison import WindowSet, discriminator_auc, reference_comparison, reference_windows
 from diagnostics.signal.window_features import FEATURES, RATE_HZ, signal_windows, window_features
@@ -77,18 +78,23 @@ def test_a_folder_is_read_one_recording_a_file_or_subfolder_and_says_what_is_mis
 ) -> None:
     rng = np.random.default_rng(1)
     (tmp_path / "machine").mkdir()
-    for name in ("machine/a.npy", "machine/b.npy", "alone.npy"):
-        np.save(tmp_path / name, rng.standard_normal(30_000))
-    found = reference_windows(tmp_path, 12_800.0)
-    assert "30000 rows; 12800 Hz (--reference-fs)" in caplog.text
-    assert {name: int(np.sum(found.owner == name)) for name in ("alone.npy", "machine")} == {
-        "alone.npy": 2,
+    for name in ("machine/a.wav", "machine/b.wav", "alone.wav"):
+        wavfile.write(tmp_path / name, 12_800, rng.standard_normal(30_000).astype(np.float32))
+    found = reference_windows(tmp_path)
+    assert "30000 rows; 12800 Hz" in caplog.text
+    assert {name: int(np.sum(found.owner == name)) for name in ("alone.wav", "machine")} == {
+        "alone.wav": 2,
         "machine": 4,
     }
     assert len(found.medians()[0]) == 3
-    with pytest.raises(UsageError, match="--reference-fs"):
-        reference_windows(tmp_path, None)
+    np.save(tmp_path / "no_rate.npy", rng.standard_normal(30_000))
+    with pytest.raises(UsageError, match=r"a column of times with its unit, time \[s\], or write it as WAV"):
+        reference_windows(tmp_path)
+    (tmp_path / "no_rate.npy").unlink()
     with pytest.raises(UsageError, match="no such folder"):
-        reference_windows(tmp_path / "nothing", None)
+        reference_windows(tmp_path / "nothing")
+    short = tmp_path / "short"
+    short.mkdir()
+    wavfile.write(short / "a.wav", 48_000, rng.standard_normal(30_000).astype(np.float32))
     with pytest.raises(UsageError, match="whole second"):
-        reference_windows(tmp_path, 48_000.0)
+        reference_windows(short)

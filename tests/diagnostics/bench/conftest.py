@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from diagnostics.bench.conditions import Tier
-from diagnostics.bench.making import SIMULATED, WantedBench, commit, make_benchmark
+from diagnostics.bench.making import SIMULATED, WantedBench, commit, write_benchmark
 from diagnostics.scoring.benchmark import SEALED, Benchmark, open_benchmark
 from tests.shared import shared_folder
 
@@ -63,7 +63,7 @@ def make(folder: Path, size: Tier = SMALL, secret: bytes = SECRET, facts: Path |
     """Make a benchmark; without an argument a small one of one test part, in which attackers would see nothing."""
     conditions: dict[str, Any] = {"same": {}, **(OTHERS if size != SMALL else {})}
     wanted = WantedBench("tiny", size, CONFIG, (), conditions, facts)
-    return Made(make_benchmark(folder / "bench", folder / "hidden", secret, wanted, 0), folder / "hidden")
+    return Made(write_benchmark(folder / "bench", folder / "hidden", secret, wanted, 0), folder / "hidden")
 
 
 def committed_benchmark(factory: pytest.TempPathFactory) -> Path:

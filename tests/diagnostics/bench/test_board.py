@@ -25,7 +25,6 @@ from diagnostics.bench.baselines import (
 )
 from diagnostics.bench.leaderboard import BOARD, NUMBERS
 from diagnostics.scoring.benchmark import open_benchmark
-from tests.command import command
 from tests.diagnostics.bench.conftest import Made
 
 
@@ -37,8 +36,7 @@ def learned(made: Made, tmp_path_factory: pytest.TempPathFactory) -> Path:
         patch.setattr("diagnostics.bench.baselines.missing_packages", lambda *_: ("torch",))
         patch.setattr("diagnostics.bench.baselines.FOLDS", 2)
         patch.setattr("diagnostics.audit.signal_attackers.DILATIONS", (1, 8))
-        ended = command("diagnostics", "bench", "baselines", str(bench))
-    assert ended.returncode == 0, ended.stderr
+        diagnostics.benchmark_baselines(bench)
     return bench
 
 
@@ -73,9 +71,7 @@ def test_the_board_orders_entries_and_pairs_their_differences(made: Made, learne
     entries.mkdir()
     perfect = pa.table({"record_id": asked, "damage": [truth[record] for record in asked]})
     pq.write_table(perfect, entries / "knows <b>all.parquet")
-    ended = command("diagnostics", "bench", "board", str(learned), str(entries), "--labels", str(made.sealed))
-    assert ended.returncode == 0, ended.stderr
-    folder = Path(ended.stdout.strip()).parent
+    folder = diagnostics.leaderboard(learned, entries, labels=made.sealed).parent
     page = (folder / BOARD).read_text()
     assert "knows &lt;b&gt;all" in page
     assert made.benchmark.digest in page
@@ -116,10 +112,9 @@ def test_a_classifier_of_states_is_graded_where_it_could_learn_them_and_detects_
 @pytest.mark.slow  # learns everything twice
 def test_baselines_say_the_same_from_any_number_of_processes(made: Made, tmp_path: Path) -> None:
     files = []
-    for workers in ("1", "2"):
-        bench = Path(shutil.copytree(made.benchmark.path, tmp_path / workers / "bench"))
-        ended = command("diagnostics", "bench", "baselines", str(bench), "--workers", workers)
-        assert ended.returncode == 0, ended.stderr
+    for workers in (1, 2):
+        bench = Path(shutil.copytree(made.benchmark.path, tmp_path / str(workers) / "bench"))
+        diagnostics.benchmark_baselines(bench, workers=workers)
         files.append(pq.read_table(bench / "baselines" / "predictions.parquet"))
     assert files[0].num_rows > 0
     assert files[1].equals(files[0])

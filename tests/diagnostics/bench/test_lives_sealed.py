@@ -15,7 +15,7 @@ from scipy.stats import kstest, rankdata
 
 import diagnostics
 import siggen
-from diagnostics.bench.conditions import LIFE_CONDITIONS
+from diagnostics.bench.conditions import LIFE_CONDITIONS, TIERS, Tier
 from diagnostics.bench.leaderboard import BOARD, NUMBERS
 from diagnostics.bench.life_question import pace
 from diagnostics.bench.making import SEALED, SECRET_FILE, SIMULATED
@@ -61,10 +61,11 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
         hidden.mkdir(parents=True)
         (hidden / SECRET_FILE).write_bytes(SECRET)
         config.write_text(yaml.safe_dump(CONFIG, sort_keys=False))
-        size = ("--learn", "5", "--test", str(GEARBOXES), "--workers", "0")
-        bench("bench", "make", str(folder / "bench"), "--config", str(config), "--secret", str(hidden), *size)
-        bench("bench", "commit", str(folder / "bench"), "--labels", str(hidden / SEALED))
-        bench("bench", "baselines", str(folder / "bench"))
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setitem(TIERS, "tiny", Tier(5, GEARBOXES))
+            diagnostics.make_benchmark(folder / "bench", config=str(config), secret=hidden, workers=0)
+        diagnostics.commit_benchmark(folder / "bench", hidden / SEALED)
+        diagnostics.benchmark_baselines(folder / "bench")
 
     folder = shared_folder(tmp_path_factory, "benchmark of lives", make)
     return Made(open_benchmark(folder / "bench"), folder / "hidden")
@@ -93,8 +94,8 @@ def test_predicted_lives_are_scored_and_ranked_by_their_error_before_and_after_l
     assert early.returncode == 2
     assert "its labels are not revealed" in early.stderr
     before = bench("score", folder, str(mine), *secret, "--json").stdout
-    page = Path(bench("bench", "board", folder, str(entries), *secret, "--out", str(tmp_path)).stdout.strip())
-    bench("bench", "reveal", folder, *secret)
+    page = diagnostics.leaderboard(folder, entries, labels=made.sealed, out=tmp_path)
+    diagnostics.reveal_benchmark(folder, made.sealed)
     try:
         assert bench("score", folder, str(mine), "--json").stdout == before
     finally:

@@ -12,6 +12,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+import diagnostics
 import siggen
 from diagnostics.scoring.benchmark import open_benchmark
 from siggen.errors import DatasetError
@@ -66,15 +67,15 @@ def test_a_benchmark_is_committed_to_scored_sealed_revealed_and_scored_again(mad
     assert "its labels are not revealed" in early.stderr
     for wrong in ((str(bench), str(mine), "--split", "validation"), (str(bench / "learn"), str(mine), *secret)):
         assert diagnostics_command("score", *wrong).returncode == 2
-    printed = diagnostics_command("bench", "commit", str(bench), *secret).stdout.strip()
+    printed = diagnostics.commit_benchmark(bench, made.sealed)
     assert printed == hashlib.sha256(made.sealed.read_bytes()).hexdigest()
     before = diagnostics_command("score", str(bench), str(mine), *secret, "--json")
     (tmp_path / "bench_secret").mkdir()
     shutil.copy(made.sealed, tmp_path / "bench_secret")
     assert diagnostics_command("score", str(bench), str(mine), "--json").stdout == before.stdout
-    revealed = diagnostics_command("bench", "reveal", str(bench)).stdout.strip()
+    revealed = diagnostics.reveal_benchmark(bench)
     shutil.rmtree(tmp_path / "bench_secret")
-    assert hashlib.sha256(Path(revealed).read_bytes()).hexdigest() == printed
+    assert hashlib.sha256(revealed.read_bytes()).hexdigest() == printed
     after = diagnostics_command("score", str(bench), str(mine), "--json")
     assert before.stdout == after.stdout
     rows = json.loads(after.stdout)["scores"]

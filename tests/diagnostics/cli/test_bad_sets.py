@@ -26,7 +26,6 @@ from tests.dataset.resealed_set import reseal
 COMMANDS = {
     "indicators": ("--out", "out"),
     "table": ("--out", "out.parquet"),
-    "models": ("--models-only", "--no-cnn", "--out", "out"),
     "report": ("--no-cnn", "--out", "out"),
     "audit": ("--out", "out"),
 }
@@ -143,10 +142,10 @@ def at_no_rate(folder: Path) -> None:
     (folder / "manifest.json").write_bytes(sealed({**manifest, "fs_hz": None}))
 
 
-ALL, ONE = tuple(COMMANDS), ("table",)
-"""A mistake in samples goes to all commands, the others to one: all read alike."""
+ONE = ("table",)
+"""A mistake in samples goes to all commands but `indicators`, which leaves records out, the others to one."""
 BAD: dict[str, tuple[Edit, tuple[str, ...], tuple[str, ...]]] = {
-    "nan": (samples(not_a_number), ("channel bearing_vertical", "not finite", "3"), ALL),
+    "nan": (samples(not_a_number), ("channel bearing_vertical", "not finite", "3"), ("table", "report", "audit")),
     "constant": (samples(constant), ("channel bearing_vertical", "constant", "3"), ONE),
     "clipped": (samples(clipped), ("channel bearing_vertical", "clipped", "range_m_s2"), ONE),
     "few revolutions": (column("tacho_s", [0.1, 0.13]), ("1 whole turns of the first shaft", "duration_s"), ONE),
@@ -163,13 +162,11 @@ BAD: dict[str, tuple[Edit, tuple[str, ...], tuple[str, ...]]] = {
     "broken manifest": (lambda folder: (folder / "manifest.json").write_text("{"), ("manifest.json",), ONE),
     "empty folder": (emptied, ("no data set here",), ONE),
     "photos": (photos, ("not a siggen data set",), ONE),
-    "no rows": (some_rows(lambda row: False), ("no ", "records"), ("table", "indicators", "models", "audit")),
+    "no rows": (some_rows(lambda row: False), ("no ", "records"), ("table", "indicators", "audit")),
     "no healthy": (
         some_rows(lambda row: row["state"] != "healthy"), ("no healthy records", "--out FILE.parquet"), ("indicators",),
     ),
     "healthy only": (some_rows(lambda row: row["state"] == "healthy"), ("no damaged records",), ("indicators",)),
-    "single state": (some_rows(lambda row: row["state"] == "slight"), ("single state", "Add damaged"), ("models",)),
-    "one gearbox": (some_rows(lambda row: row["specimen_id"] == 0), ("has no specimens", "specimens=N"), ("models",)),
 }  # fmt: skip
 """What is wrong: how it is made, what the message has to say besides the set's name, and which commands refuse it."""
 
@@ -190,7 +187,7 @@ def test_a_bad_set_ends_with_2_what_is_wrong_and_the_way_out(
     edit, parts, _ = BAD[what]
     edit(folder)
     monkeypatch.chdir(tmp_path)
-    program = {"table": "indicators", "models": "report"}.get(command, command)
+    program = {"table": "indicators"}.get(command, command)
     assert run(monkeypatch, program, str(folder), *COMMANDS[command]) == 2
     error = capsys.readouterr().err
     assert error.startswith("siggen-diagnostics: ")
@@ -198,6 +195,32 @@ def test_a_bad_set_ends_with_2_what_is_wrong_and_the_way_out(
         assert part in error
     assert "Traceback" not in error
     assert not list(tmp_path.glob("out*")), "a refused command leaves nothing behind"
+
+
+@pytest.mark.parametrize(
+    ("wanted", "parts"),
+    [
+        (lambda row: row["state"] == "slight", ("single state", "Add damaged")),
+        (lambda row: row["specimen_id"] == 0, ("has no specimens", "specimens=N")),
+    ],
+    ids=["single state", "one gearbox"],
+)
+def test_the_report_of_a_set_that_nothing_can_learn_from_says_why_and_names_no_number(
+    wanted: Callable[[dict[str, object]], bool],
+    parts: tuple[str, ...],
+    good_set: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    folder = tmp_path / "bad_set"
+    shutil.copytree(good_set, folder)
+    some_rows(wanted)(folder)
+    assert run(monkeypatch, "report", str(folder), "--no-cnn", "--out", str(tmp_path / "out")) == 0
+    metrics = json.loads((tmp_path / "out" / "metrics.json").read_text(encoding="utf-8"))
+    assert metrics["training"] is None
+    for part in parts:
+        assert part in " ".join(metrics["notes"])
+    assert metrics["headline"].startswith("No answer: ")
 
 
 def test_a_single_clipped_record_is_noted_and_used(

@@ -131,9 +131,9 @@ def test_the_explorer_takes_faults_from_the_model(kinds: Any, measured_kinds: Re
 
 def test_scores_and_tables_and_loaders_agree_on_the_classes(kinds: Any, model: Path) -> None:
     file = model / "predictions.parquet"
-    with pytest.raises(UsageError, match=r"its classes are faults; asked for were states\. Give --classes fault"):
-        diagnostics.score(kinds, file)
-    scored = diagnostics.score(kinds, file, classes="fault")
+    with pytest.raises(UsageError, match=r"its classes are faults; asked for were states\. Judge them by those"):
+        diagnostics.score(kinds, file, classes="state")
+    scored = diagnostics.score(kinds, file)
     assert "classes are faults" in str(scored)
     assert {row.records for row in scored.rows} == {"every damage", "all", "damaged"}
     matrix = diagnostics.table(kinds, classes="fault")

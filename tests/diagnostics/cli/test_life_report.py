@@ -84,8 +84,8 @@ def test_what_compares_states_refuses_lives_and_says_what_judges_them(fleet: Pat
 
 
 def test_options_of_sets_of_states_are_refused(fleet: Path) -> None:
-    with pytest.raises(UsageError, match="--state: for sets of states; this one has lives"):
-        report(str(fleet), "--state", "severe")
+    with pytest.raises(UsageError, match="--predictions: for sets of states; this one has lives"):
+        report(str(fleet), "--predictions", "mine.csv")
 
 
 def test_too_few_failed_gearboxes_are_refused_with_a_way_on(tmp_path: Path) -> None:

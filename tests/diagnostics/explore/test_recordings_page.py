@@ -34,7 +34,9 @@ def test_recordings_are_laid_over_the_healthy_one_nearest_in_speed(tmp_path: Pat
     fast = write_recording(tmp_path / "fast.npz", seed=2, speed_hz=28.0)
     new = write_recording(tmp_path / "<img src=x onerror=alert(1)>.npz", seed=3, speed_hz=27.0, knock=0.8)
     page = tmp_path / "page.html"
-    said = run("explore", new, "--healthy", slow, "--healthy", fast, *FACTS, "--out", page)
+    others = [write_recording(tmp_path / f"other_{k}.npz", seed=10 + k, speed_hz=25.0) for k in range(2)]
+    run("baseline", slow, fast, *others, *FACTS, "--out", tmp_path / "rig")
+    said = run("explore", tmp_path / "rig", slow, fast, new, "--out", page)
     assert said.count("mesh lines, halves within") == 3
     elements = held(page)
     data, found = elements["look-data"], Read(page.read_text(encoding="utf-8"))

@@ -84,7 +84,7 @@ def test_ranking_training_audit_and_features_resample_and_average_once_per_recor
     monkeypatch.setattr(bank, "PERMUTATIONS", 19)
     for command, *options in (
         ("indicators", "--out", "ranking"),
-        ("report", "--models-only", "--no-cnn", "--out", "models"),
+        ("report", "--no-cnn", "--out", "models"),
         ("audit", "--out", "audit"),
         ("indicators", "--out", "features.parquet"),
     ):
@@ -181,5 +181,5 @@ def test_an_own_indicator_goes_through_features_training_audit_report_and_predic
     recording = str(min((folder / "data").glob("test*.parquet")))
     predict = ("predict", "report/models", f"{recording}:0", "--fs", "12800", "--teeth", "18,47")
     assert run(monkeypatch, *predict, "--tacho", "tacho_s") == 2
-    assert "give --indicator MODULE:peak_to_peak" in capsys.readouterr().err
+    assert "your own indicators peak_to_peak, which are not part of a model; give" in capsys.readouterr().err
     assert run(monkeypatch, *predict, "--tacho", "tacho_s", *own) == 0, capsys.readouterr().err

@@ -69,7 +69,7 @@ def test_slips_are_named(recording: Path, tmp_path: Path) -> None:
     for arguments, told in (
         ([str(recording)], "teeth unknown"),
         ([str(recording), "--unit", "m/s2", "--teeth", "20,31"], "neither tacho nor speed"),
-        ([str(recording), "--teeth", "20,31", "--state", "severe"], "--state: for sets only"),
+        ([str(recording), "--teeth", "20,31", "--indicator", "mine:own"], "--indicator: for sets only"),
         ([str(tmp_path / "none.csv"), "--teeth", "20,31"], "no such file"),
         ([str(tmp_path), str(tmp_path)], "a second argument"),
     ):

@@ -44,7 +44,7 @@ def test_names_of_another_model_are_refused(entry: dict[str, Any], message: str,
     with pytest.raises(UsageError, match=r"feature_names\.json: does not belong to model\.json") as found:
         load_model(folder)
     assert message in str(found.value)
-    assert f"siggen-diagnostics report SET --models-only --out {folder}" in str(found.value)
+    assert f"siggen-diagnostics report SET --out {folder}" in str(found.value)
 
 
 def test_features_of_other_channels_are_refused_with_exit_code_2(
@@ -141,7 +141,7 @@ def test_a_model_that_does_not_say_what_its_classes_are_is_refused_with_the_way_
     content = unsealed_text((folder / "model.json").read_text(encoding="utf-8"))
     assert content["facts"].pop("class_kind") == "state"
     (folder / "model.json").write_text(sealed_text(content | {"format": "siggen-diagnostics model 5"}))
-    with pytest.raises(UsageError, match=r"received format '.* 5'.*Train again: .* --models-only"):
+    with pytest.raises(UsageError, match=r"received format '.* 5'.*Train again: .*"):
         load_model(folder)
 
 
