@@ -3,10 +3,12 @@
 Makes three sets in runs/ where they are missing, has `siggen-diagnostics audit` attack each of them, and prints
 Markdown: the strongest attacker by state, alone and beside the gearbox's own healthy record; what the older probe of
 four indicators would have claimed; and how healthy records lie in measured ranges. 24 gearboxes take some 25 minutes
-on two cores. SET is one of bench, parallel, industrial, families, edges; without any: bench, parallel, edges.
+on two cores. SET is one of bench, parallel, industrial, families, edges, quickstart; without any: bench, parallel,
+edges.
 
 * `detect_bench`, `detect_industrial`: presets bench and industrial with the states of STATES; `detect_parallel`: bench
   with the states of SAME and edges parallel to the axis; `detect_families`: all states of families;
+* `detect_quickstart`: quickstart with its spall in the sizes of SIZES, from which its states are chosen;
 * `detect_edges`: bench with spalls of 1 mm over SHARES of the face, both edges turned together by SKEWS_MM.
 """
 
@@ -51,6 +53,10 @@ PRESETS = {
 """Folder -> preset and states."""
 SHARES, SKEWS_MM = (0.8, 1.0), (0.0, 0.4, 0.8)
 """Shares of the face; by how much one end of both edges lies higher than the other, over a face of 20 mm."""
+SIZES = {f"face_{share}": (0.01 * share, 1.0) for share in FACES} | {
+    f"through_{size:03d}": (1.0, 0.01 * size) for size in (20, 30, 40, 60, 100)
+}
+"""Spalls of quickstart: share of the face, length along the profile [mm]."""
 HALVES = {"train": 10, "validation": 10, "test": 0}
 """Two shards of one size, for two workers; the audit knows no splits."""
 SPALL = {"kind": "irregular", "profile_length_mm": 1.0, "waviness": 0.0, "edge_radius_mm": 0.1}
@@ -97,6 +103,18 @@ def edges(gearboxes: int) -> dict[str, Any]:
             damaged[name] = {"severity": "severe", "damage": damage}
     raw = preset("bench", gearboxes, STATES[:2])
     return {**raw, "name": "edges", "states": {**raw["states"], **damaged}}
+
+
+def quickstart_sizes(gearboxes: int) -> dict[str, Any]:
+    """Return quickstart with its spall in many sizes; skews grow with the length, as in bench."""
+    raw = inherited(read_yaml(CONFIGS / "quickstart.yaml"), CONFIGS)
+    spall = raw["states"]["slight"]["damage"]
+    states: dict[str, Any] = {"healthy": {}, "healthy_again": {}}
+    for name, (share, length_mm) in SIZES.items():
+        skew = 0.18 * length_mm
+        own = {"face_share": share, "profile_length_mm": length_mm, "skew_mm_per_10mm": [-skew, skew]}
+        states[name] = {"severity": "severe", "damage": {**spall, **own}}
+    return {**raw, "name": "quickstart_sizes", "specimens": gearboxes, "states": states, "splits": HALVES}
 
 
 def audited(folder: str, raw: dict[str, Any], workers: int) -> dict[str, dict[str, Entry]]:
@@ -218,6 +236,9 @@ def main(gearboxes: int, workers: int, chosen: list[str]) -> None:
         draw(drawn)
     for folder in (folder for folder in PRESETS if folder in chosen and folder != "parallel"):
         print(f"\nhealthy records of {folder}\n", *realism_table(folder), sep="\n")
+    if "quickstart" in chosen:
+        table = ladder_table(audited("quickstart", quickstart_sizes(gearboxes), workers))
+        print("\nquickstart, its spall in many sizes\n", *table, sep="\n")
     if "edges" in chosen:
         table = edge_table(audited("edges", edges(gearboxes), workers))
         print("\nspalls of 1 mm by share and skew\n", *table, sep="\n")

@@ -74,8 +74,14 @@ def implausible(gearbox: PossibleGearbox) -> tuple[str, ...]:
         return (*_of_pairs(gearbox), *missing(gearbox))
     own_path = gearbox.config.names.own_path
     outside = (quantity for quantity in quantities(gearbox) if quantity.implausible)
-    found = (str(replace(quantity, path=own_path(quantity.path))) for quantity in outside)
+    found = (_said(gearbox, replace(quantity, path=own_path(quantity.path)), quantity.path) for quantity in outside)
     return (*found, *_outside_usual(gearbox), *missing(gearbox))
+
+
+def _said(gearbox: PossibleGearbox, quantity: UsualQuantity, path: str) -> str:
+    """Return its sentence at the key that a user wrote: a size that follows from a rated torque has none of its own."""
+    given = gearbox.given(path)
+    return str(quantity if given == path else replace(quantity, path=given, what=f"{quantity.path}: {quantity.what}"))
 
 
 def _outside_usual(gearbox: PossibleGearbox) -> Iterator[str]:
@@ -108,7 +114,8 @@ def _of_pairs(gearbox: PossibleGearbox) -> Iterator[str]:
     pairs = gearbox.config.gears.pairs
     for of_pairs in found.values():
         index, quantity = of_pairs[0]
-        yield f"{quantity}; gears.pairs.{index}, {pairs[index]} ({len(of_pairs)} of {len(pairs)} pairs)"
+        said = _said(gearbox.pairs[index], quantity, quantity.path)
+        yield f"{said}; gears.pairs.{index}, {pairs[index]} ({len(of_pairs)} of {len(pairs)} pairs)"
 
 
 def quantities(gearbox: PossibleGearbox) -> Iterator[UsualQuantity]:

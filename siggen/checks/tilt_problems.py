@@ -143,18 +143,19 @@ def _problem(gearbox: PossibleGearbox, pair: GearPair, tilts: FlankTilts) -> Pro
     path = f"dynamics.shafts.{SHAFT_OF[side]}.diameter_mm"
     thin_m = min(shaft.diameter_m for shaft in corners(gearbox.shaft(side, pair)))
     thick_m = 2.0 * pair.member(side).root_radius_m
+    given, key = gearbox.given(path), "" if gearbox.given(path) == path else f"{own_path(path)} "
     received = (
-        f"{gearbox.written(path)}, with which the flanks tilt by {1e6 * tilts.median_rad():.0f} urad under "
+        f"{key}{gearbox.written(path)}, with which the flanks tilt by {1e6 * tilts.median_rad():.0f} urad under "
         f"{gearbox.largest_torque_nm:g} N m, with {own_path('gears.youngs_modulus_gpa')} "
         f"{pair.youngs_modulus_pa / 1e9:g} and {own_path(bearing)} {gearbox.written(bearing)}"
     )
     allowed = f"allowed: a tilt of at most {1e6 * limit:.0f} urad, where an end of the face meets the other flank"
     if tilts.median_rad(**{side: thick_m}) > limit:
         advice = "no diameter below that of the root does; move gear_position nearer to 0.5, or take stiffer bearings"
-        return Problem(path, received, f"{allowed}; {advice}")
+        return Problem(given, received, f"{allowed}; {advice}")
     for _ in range(40):
         middle_m = 0.5 * (thin_m + thick_m)
         enough = tilts.median_rad(**{side: middle_m}) <= limit
         thin_m, thick_m = (thin_m, middle_m) if enough else (middle_m, thick_m)
-    advice = f"from {np.ceil(1e4 * thick_m) / 10.0:.1f} mm on, or a gear_position nearer to 0.5"
-    return Problem(path, received, f"{allowed}: {advice}")
+    advice = f"{key}from {np.ceil(1e4 * thick_m) / 10.0:.1f} mm on, or a gear_position nearer to 0.5"
+    return Problem(given, received, f"{allowed}: {advice}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal, TypeAlias, get_args
 
 from pydantic import Field, model_validator
@@ -179,7 +180,7 @@ RATED_LOAD = (
     "are not given, by the rules of `siggen init`, and take the place of those of a file that is extended; speed null: "
     "the highest of the operating points; torque null: their own defaults"
 )
-RATED_SPEED = "rated_speed_hz"
+RATED_SPEED, SIZING = "rated_speed_hz", "sizing"
 RATED_SPEED_TEXT = AllowedText("a number above 0 up to 1e+05, or null")
 RATED_TEXT = AllowedText("a number above 0 up to 1e+06, or null")
 
@@ -189,6 +190,9 @@ ACROSS = (
     "vertical]} gives one for each direction; damping_time_s: damping over stiffness at any load, in place of the "
     f"other one; {SIZED_TEXT}"
 )
+
+
+DAMPING, TIME = "damping_n_s_per_m", "damping_time_s"
 
 
 class BearingSection(Section):
@@ -211,6 +215,18 @@ class BearingSection(Section):
         description="null: the stiffness above (damage is in one of the defaults); given: each of two such ball "
         "bearings, whose stiffness follows load and clearance",
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_damping(cls, value: Any) -> Any:
+        """Let a damping over stiffness stand for the default damping; refuse it beside a given one."""
+        if not isinstance(value, Mapping) or value.get(TIME) is None:
+            return value
+        if value.get(DAMPING) is None:
+            return {**value, DAMPING: None}
+        other = received_text(value[DAMPING])
+        allowed = f"allowed: one of both; the other one null, such as {DAMPING}: null"
+        raise refusal([Problem(TIME, f"{received_text(value[TIME])}, beside {DAMPING} {other}", allowed)])
 
     @property
     def nulls(self) -> list[str]:

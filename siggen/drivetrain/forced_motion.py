@@ -216,6 +216,25 @@ class ForcedMotion:
     shaft: Mapping[str, ComplexArray]
 
 
+def forced_decay_per_s(structure: Structure, meshes: Sequence[MeanMesh]) -> float:
+    """Return the decay rate of the slowest mode of a structure with constant meshes [1/s]."""
+    stiffness, damping = _with_meshes(structure, meshes)
+    n = len(structure.coordinates)
+    matrix = np.zeros((2 * n, 2 * n))
+    matrix[:n, n:] = np.eye(n)
+    matrix[n:, :n], matrix[n:, n:] = (-np.linalg.solve(structure.mass, one) for one in (stiffness, damping))
+    return float(max(0.0, -np.linalg.eigvals(matrix).real.max()))
+
+
+def _with_meshes(structure: Structure, meshes: Sequence[MeanMesh]) -> tuple[FloatArray, FloatArray]:
+    """Return stiffness and damping (n, n) with constant meshes."""
+    stiffness, damping = structure.stiffness, structure.damping
+    for p, mean in zip((one.vector for one in structure.meshes), meshes, strict=True):
+        stiffness = stiffness + mean.stiffness_n_per_m * p[:, None] * p[None, :]
+        damping = damping + mean.damping_n_s_per_m * p[:, None] * p[None, :]
+    return stiffness, damping
+
+
 def forced_motion(
     structure: Structure,
     mesh: MeanMesh | Sequence[MeanMesh],
@@ -235,11 +254,7 @@ def forced_motion(
     frequency_hz : (k,)
     readings : names of `structure.shaft_readings` that are wanted
     """
-    stiffness, damping = structure.stiffness, structure.damping
-    means = (mesh,) if isinstance(mesh, MeanMesh) else mesh
-    for p, mean in zip((one.vector for one in structure.meshes), means, strict=True):
-        stiffness = stiffness + mean.stiffness_n_per_m * p[:, None] * p[None, :]
-        damping = damping + mean.damping_n_s_per_m * p[:, None] * p[None, :]
+    stiffness, damping = _with_meshes(structure, (mesh,) if isinstance(mesh, MeanMesh) else mesh)
     bearings = structure.bearing_forces
     zero = np.zeros(len(structure.coordinates))
     rows = [(zero, zero, structure.motions[name]) for name in motions]

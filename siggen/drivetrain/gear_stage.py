@@ -242,11 +242,6 @@ class Base:
     natural_hz: tuple[float, float, float]
     damping_ratio: float
 
-    @property
-    def slowest_decay_per_s(self) -> float:
-        """Decay rate of the base alone; what it carries makes it slower by the root of the masses' ratio at most."""
-        return 2.0 * np.pi * min(self.natural_hz) * self.damping_ratio
-
 
 # A gear as a solid steel disc of its pitch circle with its bore.
 

@@ -11,6 +11,7 @@ from siggen.config import Config, Dynamics, PlateHousing, Shafts
 from siggen.config.changes import SECTIONS, changed_sections
 from siggen.config.config import rated_nm
 from siggen.config.consistency import consistency_problems
+from siggen.config.dynamics import RATED
 from siggen.config.machine import turned
 from siggen.damage.ball_geometry import BallGeometry
 from siggen.damage.fault import Fault
@@ -228,8 +229,16 @@ class PossibleGearbox:
 
     def number(self, path: str) -> Any:
         """Return the number of a key of sections, entries of a list by their place or name."""
+        return self._number(path, self.dynamics)
+
+    def given(self, path: str) -> str:
+        """Return the key that a number stands at: its own, or the rated torque where it follows from that."""
+        rated = path.startswith("dynamics.") and self._number(path, self.config.dynamics) is None
+        return f"dynamics.{RATED}" if rated and self.number(path) is not None else path
+
+    def _number(self, path: str, dynamics: Dynamics) -> Any:
         first, *keys = path.split(".")
-        value: Any = self.dynamics if first == "dynamics" else getattr(self.config, first)
+        value: Any = dynamics if first == "dynamics" else getattr(self.config, first)
         for key in keys:
             if not isinstance(value, tuple):
                 value = getattr(value, key)

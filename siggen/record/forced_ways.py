@@ -16,8 +16,7 @@ import numpy as np
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.drivetrain.drivetrain import BASE, Place
 from siggen.drivetrain.excitation import bearing_direction, bearing_places, shaft_direction, shaft_directions
-from siggen.drivetrain.forced_motion import ForcedMotion, MeanMesh, forced_motion
-from siggen.drivetrain.gear_stage import Base
+from siggen.drivetrain.forced_motion import ForcedMotion, MeanMesh, forced_decay_per_s, forced_motion
 from siggen.drivetrain.makers import on_base
 from siggen.drivetrain.structure import Structure
 from siggen.gearbox.background import DrawnBackground
@@ -136,7 +135,7 @@ def _response(
 # seats, on shafts, base and housing. What they do to bearing forces passes the flexible modes like the model's own.
 
 DECAYS = 7.0
-"""Decay times of the base before the first sample: the lines are cut there, and what rings from it must be gone."""
+"""Decay times of the slowest mode before the first sample: forces begin there, and what rings from it must be gone."""
 AXES = ("horizontal", "vertical")
 SET_MESHES, EVEN = ("sun_meshes", "ring_meshes"), "even"
 """Of a planetary set, and the part of their push that has no direction."""
@@ -155,19 +154,28 @@ class SpecimenBackground:
     responses: Mapping[str, ComplexArray]
 
 
-def background_history_s(base: Base | None) -> float:
-    """Return the time before the first sample over which forces on the base must be followed [s]."""
-    return 0.0 if base is None else min(TRANSIENT_CAP_S, DECAYS / base.slowest_decay_per_s)
+def background_history_s(specimen: Specimen, drawn: DrawnBackground) -> float:
+    """Return the time before the first sample over which forces of the background must be followed [s].
+
+    Whatever reads shafts sees them swing on their couplings, and what stands on a base sees that.
+    """
+    assembled = _linear(specimen, drawn)
+    decay_per_s = forced_decay_per_s(assembled, mean_meshes(specimen, assembled))
+    return min(TRANSIENT_CAP_S, DECAYS / decay_per_s) if decay_per_s > 0.0 else TRANSIENT_CAP_S
+
+
+def _linear(specimen: Specimen, drawn: DrawnBackground) -> Structure:
+    machine = linear_train(specimen)
+    if drawn.base is not None and BASE in machine.body:
+        machine = on_base(machine, drawn.base)
+    return linear_structure(machine)
 
 
 def specimen_background(
     specimen: Specimen, drawn: DrawnBackground, channels: Mapping[str, ChannelWay], frequency_hz: FloatArray
 ) -> SpecimenBackground:
     """Return how the background of a specimen reaches its channels, at frequencies (k,); the same for all records."""
-    machine = linear_train(specimen)
-    if drawn.base is not None and BASE in machine.body:
-        machine = on_base(machine, drawn.base)
-    assembled = linear_structure(machine)
+    assembled = _linear(specimen, drawn)
     directions = _directions(assembled, drawn)
     if not directions:
         return SpecimenBackground((), {})

@@ -170,7 +170,7 @@ def history_s(specimen: Specimen) -> float:
 def specimen_instrument(specimen: Specimen) -> Instrument:
     """Return the instrument of a specimen; the same for all of its states, operating points and repeats."""
     drawn, fs_hz = specimen.background, specimen.sampling.fs_hz
-    history = max(history_s(specimen), 0.0 if drawn is None else background_history_s(drawn.base))
+    history = max(history_s(specimen), 0.0 if drawn is None else background_history_s(specimen, drawn))
     blocks = block_grid(round(history * fs_hz), specimen.sampling.samples)
     housing = specimen_housing(specimen)
     grid = frequencies(blocks.memory, fs_hz)

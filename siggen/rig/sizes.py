@@ -15,7 +15,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from siggen.config import Dynamics, GearsSection, RotorSection, ShaftSection, Sizing
 from siggen.config.config import OperatingRange
-from siggen.config.dynamics import RATED, RATED_SPEED
+from siggen.config.dynamics import RATED, RATED_SPEED, SIZING
 from siggen.config.inheritance import SIZED
 from siggen.damage.ball_geometry import BallGeometry
 from siggen.errors import Problem
@@ -47,12 +47,13 @@ def with_sizes(raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[Problem]]:
         With everything that it extends.
     """
     dynamics = raw.get("dynamics")
-    rated = dynamics.get(RATED) if isinstance(dynamics, Mapping) else None
-    if rated is None or not isinstance(dynamics, Mapping):
+    if not isinstance(dynamics, Mapping):
         return dict(raw), []
     if beside := [key for key in OTHERS if raw.get(key)]:
-        allowed = "allowed with gears alone; here give masses, bearings and couplings themselves"
-        return dict(raw), [Problem(f"dynamics.{RATED}", f"{received_text(rated)}, beside {beside[0]}", allowed)]
+        return dict(raw), list(_unused(dynamics, beside[0]))
+    rated = dynamics.get(RATED)
+    if rated is None:
+        return dict(raw), []
     try:
         torque_nm = TypeAdapter(float).validate_python(rated, strict=True)
         gears = GearsSection.model_validate(raw.get("gears"))
@@ -72,6 +73,23 @@ def with_sizes(raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[Problem]]:
     if found[RATED_SPEED] is None:
         found[RATED_SPEED] = speed_hz
     return {**raw, "dynamics": found}, []
+
+
+def _unused(dynamics: Mapping[str, Any], beside: str) -> Iterator[Problem]:
+    """Yield what says how a gearbox is made for a rated load, beside what gives its sizes itself."""
+    allowed = "allowed with gears alone; here give masses, bearings and couplings themselves"
+    for key in (RATED, RATED_SPEED, SIZING):
+        given = dynamics.get(key)
+        # a stored configuration states every key, so a default is nobody's slip
+        if given is not None and not (key == SIZING and _is_default(given)):
+            yield Problem(f"dynamics.{key}", f"{received_text(given)}, beside {beside}", allowed)
+
+
+def _is_default(sizing: object) -> bool:
+    try:
+        return Sizing.model_validate(sizing) == Sizing()
+    except ValidationError:
+        return False
 
 
 def _diameter_mm(dynamics: Mapping[str, Any], wheel: str) -> float | None:

@@ -24,7 +24,7 @@ from siggen.record.background_course import BackgroundCourse, course_at
 from siggen.record.bearing_noise import velocity_density
 from siggen.record.channels import BlockInputs
 from siggen.record.drive import record_rotation
-from siggen.record.forced_ways import ChannelWay, SpecimenBackground, specimen_background
+from siggen.record.forced_ways import ChannelWay, SpecimenBackground, background_history_s, specimen_background
 from siggen.record.instrument import Instrument, specimen_instrument
 from siggen.record.rubbing import RubbingForce, force_spectrum
 from siggen.sensing.filters import frequencies
@@ -340,6 +340,15 @@ def test_the_noise_of_machines_swells_with_their_shafts_and_by_chance_and_keeps_
     gear_hz = course.point.speed_hz * float(specimen.shaft_turns[-1])
     line = np.abs(np.mean(turning * np.exp(-2j * np.pi * gear_hz * np.arange(turning.size) / config.fs_hz)))
     assert 2.0 * line / np.mean(turning) == pytest.approx(0.35, abs=0.05)  # of its own shaft; noise of 0.02
+
+
+def test_forces_without_a_base_are_followed_as_long_as_the_shafts_ring() -> None:
+    """What is left of an impulse after the history is e^-7 of the slowest mode; 20 ms would leave most of it."""
+    specimen = loaded(background={"rubbing": {}}).gearbox(0)
+    assert specimen.background is not None
+    history_s = background_history_s(specimen, specimen.background)
+    # the load is held by a spring of 1 Hz with 0.95 of the critical damping: 6 per second
+    assert history_s == pytest.approx(7.0 / (2.0 * np.pi * 0.95), rel=0.02)
 
 
 def test_a_base_needs_a_casing() -> None:

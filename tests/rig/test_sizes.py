@@ -256,6 +256,15 @@ def test_it_takes_the_place_of_the_sizes_of_a_file_that_is_extended(tmp_path: Pa
         ("dynamics.rated_torque_nm", -5.0, {}, "-5.0", "above 0"),
         ("dynamics.rated_torque_nm", "much", {}, "the text 'much'", "number"),
         ("dynamics.rated_torque_nm", 60.0, {"planetary": {"ring_teeth": 77}}, "60.0, beside planetary", "gears alone"),
+        ("dynamics.rated_speed_hz", None, {
+            "planetary": {"ring_teeth": 77}, "dynamics": {"rated_speed_hz": 30.0}
+        }, "30.0, beside planetary", "gears alone"),
+        ("dynamics.sizing", None, {
+            "planetary": {"ring_teeth": 77}, "dynamics": {"sizing": {"clearance_um": 3.0}}
+        }, "a mapping with clearance_um, beside planetary", "gears alone"),
+        ("dynamics.gear.bearing.damping_time_s", None, {
+            "dynamics": {"gear": {"bearing": {"damping_time_s": 1e-5, "damping_n_s_per_m": 900.0}}}
+        }, "1e-05, beside damping_n_s_per_m 900.0", "one of both"),
         ("dynamics.sizing.series", 60.0, {"dynamics": {"sizing": {"series": 61}}}, "61", "60, 62, 63"),
         ("dynamics.shafts.driver.diameter_mm", None, {
             "dynamics": {"shafts": {"driver": {"diameter_mm": None}}}
@@ -270,6 +279,20 @@ def test_what_cannot_be_is_refused_at_its_key(
     (problem,) = [one for one in refused.value.problems if one.path == path]
     assert problem.received == received
     assert allowed in problem.allowed
+
+
+def test_a_damping_over_stiffness_takes_the_place_of_the_default_damping_and_reads_the_same() -> None:
+    config = sized(None, dynamics={"gear": {"bearing": {"stiffness_n_per_m": 1e8, "damping_time_s": 2e-5}}})
+    assert stage(config.gearbox(0)).gear.bearing.damping_x_n_s_per_m == pytest.approx(2e3)
+    assert load_config(config.config.canonical()) == config
+
+
+def test_a_size_that_nobody_wrote_stands_at_the_rated_torque() -> None:
+    possible = sized(dynamics={"gear": {"mass_kg": 4.0}}).possible
+    assert possible.given("dynamics.pinion.mass_kg") == "dynamics.rated_torque_nm"
+    assert possible.given("dynamics.shafts.driver.diameter_mm") == "dynamics.rated_torque_nm"
+    assert possible.given("dynamics.gear.mass_kg") == "dynamics.gear.mass_kg"
+    assert possible.given("gears.module_mm") == "gears.module_mm"
 
 
 def test_a_state_changes_the_bearing_that_was_drawn_but_not_how_the_gearbox_was_made() -> None:
