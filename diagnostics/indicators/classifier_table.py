@@ -21,7 +21,7 @@ from diagnostics.indicators.own_indicator import load_indicators
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable, record_table, revolution_columns
 from diagnostics.records.gear_train import MeshNames
-from diagnostics.records.record_classes import STATE, RecordClasses, record_classes, set_classes
+from diagnostics.records.record_classes import STATE, RecordClasses, check_dataset, record_classes, set_classes
 from diagnostics.records.state_classes import CLASS
 from diagnostics.records.usable_records import RecordCheck, problem_list
 from siggen.dataset.reading import Dataset
@@ -41,7 +41,8 @@ WRITERS = (".parquet", ".csv")
 def table(dataset: Dataset, *, indicators: Sequence[str] = (), workers: int = 1, classes: str = STATE) -> FeatureMatrix:
     """Return one row per record: indicators of every channel, labels with their roles, gearbox and split.
 
-    Sets of lives have the labels `age_h` and `rul_h` in place of `class`.
+    Sets of lives have the labels `age_h` and `rul_h` in place of `class`. Indicators that no record has are left out,
+    and named in `undefined`; single values may be NaN.
 
     The indicators are those that the classifiers of `siggen-diagnostics report` take. They are kept beside the set, so
     that only the first call computes them.
@@ -66,8 +67,9 @@ def table(dataset: Dataset, *, indicators: Sequence[str] = (), workers: int = 1,
     DatasetError
         If records cannot be used; the message names them.
     UsageError
-        If the classes are of an unknown kind.
+        If the classes are of an unknown kind, or no set is given.
     """
+    check_dataset(dataset, "table")
     lives = dataset.config.get("life") is not None
     told = None if lives else set_classes(dataset, classes)
     found = record_table(dataset, own=load_indicators(list(indicators)), workers=workers)
@@ -76,8 +78,8 @@ def table(dataset: Dataset, *, indicators: Sequence[str] = (), workers: int = 1,
         warnings.warn(f"{dataset.path}: {note}", stacklevel=2)
     roles, own = {name: dataset.role(name) for name in found.label_names}, classifier_table(found, notes)
     if not lives:
-        return replace(feature_matrix(own, told), label_roles={**roles, CLASS: Role.TARGET})
-    matrix = _arrays(own)
+        return replace(feature_matrix(own, told), label_roles={**roles, CLASS: Role.TARGET}).defined()
+    matrix = _arrays(own).defined()
     labels = {**matrix.labels, **_life_labels(dataset, matrix.labels)}
     return replace(matrix, labels=labels, label_roles={**roles, **LIFE_LABELS})
 

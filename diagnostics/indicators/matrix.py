@@ -32,6 +32,8 @@ class FeatureMatrix:
         Of labels, as the set says them; others are conditions.
     gears : GearNames
         What columns are called after.
+    undefined : tuple of str
+        Columns that are left out because no record has a value there.
     """
 
     values: np.ndarray
@@ -39,6 +41,7 @@ class FeatureMatrix:
     labels: dict[str, np.ndarray]
     label_roles: Mapping[str, Role] = field(default_factory=dict)
     gears: GearNames = PAIR
+    undefined: tuple[str, ...] = ()
 
     def __iter__(self) -> Iterator[np.ndarray]:
         """Yield values, target and groups: `X, y, groups = diagnostics.table(dataset)`; of lives y is `rul_h`."""
@@ -70,6 +73,14 @@ class FeatureMatrix:
         return replace(self, values=self.values[mask], labels={k: v[mask] for k, v in self.labels.items()})
 
     def columns(self, names: Sequence[str]) -> FeatureMatrix:
-        """Return the chosen columns."""
+        """Return the chosen columns, such as those of another set; those that no record here has are NaN."""
         place = {name: k for k, name in enumerate(self.names)}
-        return replace(self, values=self.values[:, [place[name] for name in names]], names=tuple(names))
+        nowhere = np.full(len(self.values), np.nan)
+        found = [nowhere if name in self.undefined else self.values[:, place[name]] for name in names]
+        return replace(self, values=np.stack(found, axis=1), names=tuple(names), undefined=())
+
+    def defined(self) -> FeatureMatrix:
+        """Return the columns that some record has a value of; the others by name in `undefined`."""
+        known = np.isfinite(self.values).any(axis=0)
+        kept, lost = (tuple(np.array(self.names)[chosen].tolist()) for chosen in (known, ~known))
+        return replace(self, values=self.values[:, known], names=kept, undefined=lost)

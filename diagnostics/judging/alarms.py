@@ -28,7 +28,7 @@ from diagnostics.judging.judgement import NETWORK, NETWORK_REFERENCED, TITLES, J
 from diagnostics.judging.learners import BestColumn, Odds
 from diagnostics.judging.of_split import Training
 from diagnostics.records.gear_train import PAIR, GearNames
-from diagnostics.records.state_classes import HEALTHY, SHAM, damage_kinds, ordered_states
+from diagnostics.records.state_classes import CLASS, HEALTHY, SHAM, damage_kinds, ordered_states
 from diagnostics.statistics.detectable_size import detection_curve, size_at, weighted_quantile
 from diagnostics.statistics.evaluation import Interval, area, area_interval, bootstrap_weights
 from diagnostics.statistics.indicator_statistics import size_interval
@@ -356,9 +356,18 @@ def evaluate(model: Any, data: FeatureMatrix, *, beside: bool = False, seed: int
     Raises
     ------
     UsageError
-        If the model lacks these methods, a score is not finite, or fewer than four gearboxes have healthy or damaged
-        records.
+        If the model lacks these methods or fails, the data are no table of states, a score is not finite,
+        or fewer than four gearboxes have healthy or damaged records.
     """
+    if isinstance(model, type):
+        raise UsageError(f"evaluate: received the class {model.__name__}; allowed: one of it, {model.__name__}()")
+    if not isinstance(data, FeatureMatrix):
+        what = f"{type(data).__name__}; allowed: what diagnostics.table returned, diagnostics.table(siggen.open(...))"
+        raise UsageError(f"evaluate: received a {what}")
+    if CLASS not in data.labels:
+        raise UsageError(
+            "evaluate: received records of lives; allowed: a set of states, since damage is judged by state"
+        )
     if not hasattr(model, "fit") or not any(hasattr(model, name) for name in ("decision_function", "predict_proba")):
         what = f"{type(model).__name__} without `fit` and `decision_function` or `predict_proba`"
         raise UsageError(f"evaluate: received {what}; allowed: classifiers of scikit-learn, and what has these methods")
@@ -370,7 +379,13 @@ def evaluate(model: Any, data: FeatureMatrix, *, beside: bool = False, seed: int
         )
     entry = Entry(type(model).__name__, lambda: Odds(deepcopy(model)), taken.values, np.ones(len(taken.values), bool))
     damaged, fold = taken.labels["fault"] != HEALTHY, DESIGN.dealt(taken.groups, seed)[0]
-    score = pooled_scores(entry, damaged, taken.groups, fold)[0]
+    try:
+        score = pooled_scores(entry, damaged, taken.groups, fold)[0]
+    except (TypeError, ValueError) as error:
+        raise UsageError(
+            f"evaluate: {entry.name} could not learn or score: {error}. Values are NaN where an indicator is "
+            "undefined: a classifier that cannot take them needs make_pipeline(SimpleImputer(), ...)"
+        ) from error
     if wrong := int((~np.isfinite(score)).sum()):
         what = f"{type(model).__name__}, whose scores of {wrong} of {len(score)} records are no finite numbers"
         raise UsageError(f"evaluate: received {what}; allowed: a finite score for every record")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,7 +30,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PAGE = "machine.html"
-TREND = "Distance from the healthy recordings over all checks, oldest first, as a multiple of the limit of each check."
+SHORTEST_SPAN = timedelta(hours=12)
+"""Beside the first and the last check, so that those of one call stand over their date."""
+TREND = (
+    "Distance from the healthy recordings by the time of each check (UTC), over the limit of that check. Above 1 a "
+    "recording counts as changed. The unchanged machine exceeds 1 as often as the rate of false alarms says. Checks "
+    "that cannot tell have no point."
+)
 NO_STATE = (
     "This page says whether the machine has changed against its own healthy recordings. It names no fault: that takes "
     "recordings of known faults, or a model of this machine."
@@ -43,7 +50,8 @@ def write_machine_page(machine: Machine, folder: Path, checks: Sequence[Check], 
     parts = [
         Heading(f"Machine {folder.name}: {_headline(checks)}", 1),
         *summary_blocks(
-            [_headline_sentence(checks), NO_STATE, rate_sentence(_used(machine, checks), machine.false_alarms)]
+            [_headline_sentence(checks), NO_STATE, rate_sentence(_used(machine, checks), machine.false_alarms)],
+            _tone(checks),
         ),
         FigureGrid([FigureBlock(figure, TREND)]),
         TableBlock(
@@ -80,6 +88,12 @@ def _look(folder: Path, checks: Sequence[Check]) -> str:
     )
 
 
+def _tone(checks: Sequence[Check]) -> str:
+    """Return green where nothing has changed, red where something has, neither where a check cannot tell."""
+    said = {check.verdict for check in checks}
+    return "failed" if CHANGED in said else "passed" if said == {UNCHANGED} else ""
+
+
 def _headline(checks: Sequence[Check]) -> str:
     return ", ".join(dict.fromkeys(check.verdict for check in checks))
 
@@ -111,17 +125,18 @@ def _moved_table(check: Check) -> TableBlock:
 
 
 def _trend(history: Sequence[PastCheck]) -> Figure:
-    from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+    from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
+    from matplotlib.ticker import LogLocator, NullFormatter
 
     figure, axes = new_figure(height_in=2.8)
     axis = axes[0, 0]
     known = [
-        (k, past.verdict, past.score, past.limit)
-        for k, past in enumerate(history, start=1)
+        (datetime.fromisoformat(past.made), past.verdict, past.score / past.limit)
+        for past in history
         if past.score is not None and past.limit is not None
     ]
     for verdict, colour, marker in ((UNCHANGED, HEALTHY_COLOUR, "o"), (CHANGED, FAULT_COLOURS[2], "D")):
-        places = [(k, score / limit) for k, said, score, limit in known if said == verdict]
+        places = [(made, distance) for made, said, distance in known if said == verdict]
         if places:
             axis.plot(*zip(*places, strict=True), marker, color=colour, label=verdict, markersize=5)
     axis.axhline(1.0, color="#1c2733", linewidth=1.2, label="limit")
@@ -129,9 +144,14 @@ def _trend(history: Sequence[PastCheck]) -> Figure:
     axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.yaxis.set_major_formatter("{x:g}")
     axis.yaxis.set_minor_formatter(NullFormatter())
-    axis.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
-    axis.set_xlabel("check")
-    axis.set_ylabel("distance over limit")
     if known:
-        axis.legend(loc="upper left")
+        first, last = min(made for made, *_ in known), max(made for made, *_ in known)
+        margin = max(0.05 * (last - first), SHORTEST_SPAN)
+        axis.set_xlim(first - margin, last + margin)
+        dates = AutoDateLocator(minticks=2, maxticks=6)
+        axis.xaxis.set_major_locator(dates)
+        axis.xaxis.set_major_formatter(ConciseDateFormatter(dates))
+    axis.set_xlabel("time of the check (UTC)")
+    axis.set_ylabel("distance over limit")
+    figure.legend(loc="outside upper center", ncols=3)
     return figure

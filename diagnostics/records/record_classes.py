@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -103,6 +104,20 @@ def record_classes(labels: Mapping[str, np.ndarray], kind: str = STATE, healthy:
         return RecordClasses(kind, {state: _fault(labels, state) for state in states}, HEALTHY if merged else None)
     name = (healthy or merged[0]) if merged else None
     return RecordClasses(kind, {state: name if name and state in merged else state for state in states}, name)
+
+
+def check_dataset(dataset: object, caller: str) -> None:
+    """Check that a function of the public face got a set.
+
+    Raises
+    ------
+    UsageError
+        If it is something else; says how a set is opened.
+    """
+    if not hasattr(dataset, "labels") or not hasattr(dataset, "manifest"):
+        said = repr(str(dataset)) if isinstance(dataset, (str, Path)) else f"a {type(dataset).__name__}"
+        path = str(dataset) if isinstance(dataset, (str, Path)) else "runs/quickstart"
+        raise UsageError(f"{caller}: received {said}; allowed: what siggen.open returned, siggen.open({path!r})")
 
 
 def refuse_lives(dataset: Dataset) -> None:

@@ -17,7 +17,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from diagnostics.judging.judgement import TITLES
-from diagnostics.records.record_classes import STATE
+from diagnostics.records.record_classes import STATE, check_dataset
 from diagnostics.scoring.prediction_file import (
     CLASSIFIER,
     baselines_beside,
@@ -128,7 +128,28 @@ class Scores:
             few = counted(self.gearboxes, "gearbox", "gearboxes")
             said = f"shares have exact limits, all else and differences have limits from {FEWEST_GEARBOXES} on"
             lines += ["", f"{few}: too few to tell classifiers apart; {said}"]
-        return "\n".join(lines)
+        return "\n".join([*lines, "", self.verdict])
+
+    @property
+    def verdict(self) -> str:
+        """What the first score means in one line: against chance, and against the best other classifier."""
+        own, *others = self.rows
+        sign = -1.0 if own.falls else 1.0
+
+        def side(low: float, high: float) -> str:
+            """Return on which side of 0 both limits lie; undefined ones tell nothing."""
+            low, high = sorted((sign * low, sign * high))
+            return "better than" if low > 0.0 else "worse than" if high < 0.0 else "not told from"
+
+        against = side(own.score.low - own.chance, own.score.high - own.chance)
+        text = f"{own.name}: {own.measure} {own.score.value:.2f} ({own.records}) is {against} chance ({own.chance:.2f})"
+        others = [row for row in others if (row.task, row.measure, row.records) == (own.task, own.measure, own.records)]
+        if not others:
+            return f"{text}."
+        best = max(others, key=lambda row: sign * row.score.value)
+        apart = best.difference or Interval(math.nan, math.nan, math.nan)
+        beside = side(apart.low, apart.high)
+        return f"{text}, and {beside} {TITLES.get(best.name, best.name)} ({best.score.value:.2f}), the best other."
 
 
 def _shown(found: Interval, form: str) -> str:
@@ -178,6 +199,7 @@ def score(
     UsageError
         If records are missing, come twice or are unknown, or values cannot be; all of it in one message.
     """
+    check_dataset(dataset, "score")
     table, identity = prediction_table(predictions), str(dataset.manifest["identity"])
     truth = truth_of(dataset, split, classes or named_kind(table, dataset))
     where = predictions if isinstance(predictions, str | Path) else "predictions"

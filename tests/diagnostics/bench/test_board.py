@@ -96,7 +96,7 @@ def test_a_classifier_of_states_is_graded_where_it_could_learn_them_and_detects_
     model = diagnostics.LogisticBaseline(strengths=(0.01,)).fit(learn.values, learn.labels["class"], learn.groups)
     rows: dict[str, list[np.ndarray]] = {}
     for name in bench.parts:
-        asked = diagnostics.table(bench.part(name)).split("test")
+        asked = diagnostics.table(bench.part(name)).split("test").columns(learn.names)
         rows.setdefault("record_id", []).append(asked.labels["record_id"])
         for label, column in zip(model.classes_, model.predict_proba(asked.values).T, strict=True):
             rows.setdefault(f"p_{label}", []).append(column)

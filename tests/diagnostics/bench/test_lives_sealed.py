@@ -133,7 +133,7 @@ def test_a_model_of_ones_own_takes_age_and_indicators_from_the_public_table(made
     assert found.rows[0].score.value == pytest.approx(np.mean(errors))
     assert np.isnan(asked.labels["rul_h"]).all()
     assert asked.roles["rul_h"] == "target"
-    assert asked.values.shape == (GEARBOXES, learn.values.shape[1])
+    assert asked.columns(learn.names).values.shape == (GEARBOXES, learn.values.shape[1])
 
 
 @pytest.mark.parametrize(

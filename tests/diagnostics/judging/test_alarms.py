@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
@@ -156,6 +157,15 @@ def test_any_classifier_is_judged_as_those_of_a_report_are() -> None:
     assert forest.states["severe"].auc.low > 0.5
     assert f"severe: AUC {forest.states['severe'].auc.value:.3f}" in str(forest)
     assert evaluate(LinearSVC(), matrix).specimens == GEARBOXES  # has no probabilities
+    with pytest.raises(UsageError, match=r"received the class LinearSVC; allowed: one of it, LinearSVC\(\)$"):
+        evaluate(LinearSVC, matrix)
+    with pytest.raises(UsageError, match=r"received a ndarray; allowed: what diagnostics\.table returned"):
+        evaluate(own, values)  # type: ignore[arg-type]
+    gaps = replace(matrix, values=np.where(np.arange(30) == 3, np.nan, values))
+    with pytest.raises(
+        UsageError, match=r"(?s)LinearSVC could not learn or score: .*NaN.* make_pipeline\(SimpleImputer"
+    ):
+        evaluate(LinearSVC(), gaps)
     with pytest.raises(UsageError, match=r"received KMeans without `fit` and `decision_function` or `predict_proba`"):
         evaluate(KMeans(2), matrix)
     with pytest.raises(UsageError, match=r"received Silent, whose scores of \d+ of \d+ records are no finite numbers"):

@@ -11,6 +11,7 @@ pytest.importorskip("torch")
 
 import diagnostics
 from diagnostics.loader import WindowDataset
+from siggen.errors import UsageError
 
 
 def test_windows_are_those_of_the_loader_and_their_mean_is_the_answer_of_a_record(dataset: Any) -> None:
@@ -44,5 +45,12 @@ def test_averages_and_tables_go_into_a_fit_as_they_are(
     np.testing.assert_array_equal(truth.numpy(), found.labels["class_id"][:5])
     values, target, groups = diagnostics.table(dataset).split("test")
     assert len(values) == len(target) == len(groups) == 24
+    whole = diagnostics.table(dataset)
+    assert whole.undefined  # too few turns for some indicators
+    assert np.isfinite(whole.values).any(axis=0).all()
+    assert np.isnan(whole.columns(whole.undefined).values).all()
+    for wrong, said in ((str(dataset.path), r"received '.*'"), (values, "received a ndarray")):
+        with pytest.raises(UsageError, match=rf"table: {said}; allowed: what siggen\.open returned"):
+            diagnostics.table(wrong)
     names = np.array(found.classes)
     np.testing.assert_array_equal(names[found.labels["class_id"]], target)

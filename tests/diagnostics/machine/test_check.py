@@ -69,11 +69,13 @@ def test_the_machine_again_is_unchanged_and_a_knocking_tooth_is_a_change(machine
     knocking = write_recording(tmp_path / "knocking.npz", seed=51, knock=0.8)
     code, said = run("check", machine, healthy)
     assert (code, "healthy.npz: unchanged" in said) == (0, True), said
+    assert '<p class="first passed">1 of 1 unchanged.</p>' in (machine / "machine.html").read_text()
     (tmp_path / "broken.npz").write_bytes(b"no archive")
     code, said = run("check", machine, tmp_path / "broken.npz", knocking)
     assert (code, "knocking.npz: changed" in said, "broken.npz: cannot tell" in said) == (4, True, True), said
     page = (machine / "machine.html").read_text()
     assert "knocking.npz" in page
+    assert '<p class="first failed">1 of 1 changed.</p>' in page
     assert [past.verdict for past in past_checks(machine)][-2:] == ["unchanged", "changed"]
 
 

@@ -293,6 +293,8 @@ def test_differences_are_paired_with_the_classifiers_of_a_training(dataset: Any,
     alone = diagnostics.score(dataset, models / "predictions.parquet")
     assert row(alone, "macro AUROC", "all", "boosting").score == row(found, "macro AUROC", "all").score
     assert "gradient boosting on indicators" in str(found)
+    assert str(found).splitlines()[-1] == found.verdict
+    assert "and not told from gradient boosting on indicators" in found.verdict
     assert found.to_table().num_rows == len(found.rows)
 
 
