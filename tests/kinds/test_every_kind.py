@@ -134,6 +134,10 @@ def with_background(background: dict[str, Any]) -> siggen.Record:
     """Return what a sensor on a lid records among sources of noise, its own noise and converter left out."""
     raw = machine(background=background, sensors={"lid": {"place": "lid", "bits": None, "noise": None}})
     raw["dynamics"]["model"] = "casing"
+    raw["dynamics"]["friction"] = {
+        **raw["dynamics"].get("friction", {}),
+        "oil_temperature_c": 100.0,
+    }  # thin: flanks touch
     return siggen.run(siggen.draw(load_config(raw)))
 
 
