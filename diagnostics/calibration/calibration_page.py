@@ -106,7 +106,7 @@ def write_calibration_page(
         FigureGrid(figures),
         Paragraph(
             "Recordings and simulated records over each other, once a set is generated: `siggen-diagnostics explore "
-            f"RECORDING... SET --config {found.rig.file.name}`."
+            f"RECORDING... SET --teeth {found.rig.file.name}`."
         ),
         Heading("What gives the set away"),
         *_feature_parts(before, after),

@@ -85,7 +85,7 @@ def read_rig(file: Path) -> CalibratedRig:
         raise UsageError(
             f"{file}: planetary: received a planetary set; forces of its planets turn with the carrier, so no path "
             "from bearings at rest carries its lines. Allowed: pairs and machines of several meshes. "
-            f"`siggen-diagnostics baseline --config {file}` watches such machines by their recordings"
+            f"`siggen-diagnostics baseline --teeth {file}` watches such machines by their recordings"
         )
     if design.pairs:
         raise UsageError(f"{file}: gears differ within the set; a calibration is of one machine of known teeth")

@@ -45,7 +45,7 @@ def baseline(
 
     Recordings that cannot be used are named behind the others; the exit code is then 2.
 
-    Example: siggen-diagnostics baseline 1.csv 2.csv 3.csv 4.csv --fs 25600 --teeth 25,56 --speed-range 14,26 -o rig
+    Example: siggen-diagnostics baseline 1.csv 2.csv 3.csv 4.csv --fs 25600 --teeth 25,56 --speed 14,26 -o rig
     """
     from diagnostics.base.progress import terminal_stage
     from diagnostics.machine.check import rate_sentence

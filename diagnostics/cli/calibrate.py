@@ -15,21 +15,29 @@ from siggen.cli.option_groups import grouped
 if TYPE_CHECKING:
     from diagnostics.calibration.calibration import Calibration
 
+MOST_COMPARED, INJECTED = 8, 2
+"""Gearboxes of rig and result on the page, about 1 s each; gearboxes whose damage is injected into each recording."""
+
 
 @dataclass(frozen=True, slots=True)
 class DrawOptions:
     """What is drawn."""
 
     gearboxes: Annotated[
-        int, typer.Option(min=2, max=500, help="Gearboxes simulated for their bearing forces, about 1 s each.")
+        int,
+        typer.Option(
+            min=2,
+            max=200,
+            help="Gearboxes simulated for their bearing forces, about 1 s each; the page compares as many, up to 8.",
+        ),
     ] = 24
     paths: Annotated[int, typer.Option(min=1, max=200, help="Possible transfer paths, drawn per gearbox.")] = 24
     seed: Annotated[int, typer.Option(min=0, help="Seed of what is drawn.")] = 0
 
 
 @dataclass(frozen=True, slots=True)
-class CalibrationPageOptions:
-    """What the page compares."""
+class UseOptions:
+    """What else is done with recordings."""
 
     held_out: Annotated[
         list[str] | None,
@@ -39,26 +47,15 @@ class CalibrationPageOptions:
             help="Healthy recordings that the page judges by, not used for the fit. May be given several times.",
         ),
     ] = None
-    compared: Annotated[
-        int, typer.Option(min=0, max=200, help="Gearboxes of rig and result on the page, about 1 s each; 0: no page.")
-    ] = 8
-
-
-@dataclass(frozen=True, slots=True)
-class InjectionOptions:
-    """Damage in your recordings."""
-
     inject: Annotated[
         Path | None,
         typer.Option(
             "--inject",
             metavar="FOLDER",
-            help="Also write the recordings plus the simulated difference damaged less healthy, as a set.",
+            help="Also write the recordings plus the simulated difference damaged less healthy, as a set: two "
+            "gearboxes for each recording.",
         ),
     ] = None
-    per_recording: Annotated[
-        int, typer.Option("--per-recording", min=1, max=100, help="Gearboxes whose damage is injected into each.")
-    ] = 2
 
 
 @grouped
@@ -85,15 +82,14 @@ def calibrate(
         str, typer.Option("--torque", metavar="LOW,HIGH", help="Torque of the recordings [Nm]. Default: the rig's.")
     ] = "",
     draws: DrawOptions,
-    page: CalibrationPageOptions,
-    injection: InjectionOptions,
+    use: UseOptions,
 ) -> None:
     """Fit a configuration to healthy recordings: `siggen generate` then draws sets that resemble the machine.
 
     Transfer paths, noise, its modulation, lines beside the mesh, speed and resolution follow from the recordings, with
     intervals from leaving recordings out. What they cannot tell is drawn per gearbox and named.
 
-    Example: siggen-diagnostics calibrate rig.yaml may.csv june.csv july.csv --fs 25600 --speed-range 14,26 -o mine.yaml
+    Example: siggen-diagnostics calibrate rig.yaml may.csv june.csv july.csv --fs 25600 --speed 14,26 -o mine.yaml
     """
     import siggen
     from diagnostics.base.extras import require_packages
@@ -106,9 +102,8 @@ def calibrate(
     from diagnostics.calibration.path_draws import family_size
     from diagnostics.calibration.rig import check_speeds, read_rig, rig_channels
 
-    check_new(out, injection.inject)
-    if page.compared:
-        require_packages("the page of a calibration", "matplotlib")
+    check_new(out, use.inject)
+    require_packages("the page of a calibration", "matplotlib")
     sources = [source for said in healthy for source in file_rows(said)]
     with terminal_stage("the rig", 1):
         machine = read_rig(rig)
@@ -118,7 +113,7 @@ def calibrate(
     newtons = two_numbers(torque, "--torque", "15,60") if torque else None
     with terminal_stage("healthy recordings", 1) as advance:
         blocks = healthy_blocks(sources, names, facts, teeth, span)
-        others = [source for entry in page.held_out or () for source in file_rows(entry)]
+        others = [source for entry in use.held_out or () for source in file_rows(entry)]
         judges = held_out_blocks(others, blocks, facts, teeth, span)
         check_speeds(machine, (*blocks.blocks, *(judges.blocks if judges else ())))
         advance()
@@ -131,14 +126,13 @@ def calibrate(
     siggen.load_config(out)  # what would be refused is said now
     _tell(found)
     echo(str(out))
-    if injection.inject is not None:
-        per_recording = injection.per_recording
-        with terminal_stage("injected gearboxes", per_recording * len(blocks.blocks)) as advance:
-            echo(str(write_injected(blocks, out, per_recording, injection.inject, seed, advance)))
-    if page.compared:
-        with terminal_stage("records to compare", 2 * page.compared) as advance:
-            written, sentences = calibration_page(found, out, judges, (page.compared, seed), advance)
-        echo("\n".join([*sentences[:2], str(written)]))
+    if use.inject is not None:
+        with terminal_stage("injected gearboxes", INJECTED * len(blocks.blocks)) as advance:
+            echo(str(write_injected(blocks, out, INJECTED, use.inject, seed, advance)))
+    compared = min(MOST_COMPARED, draws.gearboxes)
+    with terminal_stage("records to compare", 2 * compared) as advance:
+        written, sentences = calibration_page(found, out, judges, (compared, seed), advance)
+    echo("\n".join([*sentences[:2], str(written)]))
 
 
 def _tell(found: Calibration) -> None:

@@ -54,7 +54,7 @@ def indicators(
 
     Example: siggen-diagnostics indicators runs/quickstart --out features.parquet
 
-    Example: siggen-diagnostics indicators run.csv --fs 25600 --teeth 25,56 --speed-range 14,26
+    Example: siggen-diagnostics indicators run.csv --fs 25600 --teeth 25,56 --speed 14,26
     """
     if gears.given or file_rows(targets[0])[0][0].is_file():
         if indicator:

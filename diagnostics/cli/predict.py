@@ -65,7 +65,7 @@ def predict(
 
     Of several recordings, those that cannot be used are named behind the others; the exit code is then 2.
 
-    Example: siggen-diagnostics predict runs/quickstart_report run.csv --fs 25600 --teeth 18,47 --speed-range 30,40
+    Example: siggen-diagnostics predict runs/quickstart_report run.csv --fs 25600 --teeth 18,47 --speed 30,40
     """
     from diagnostics.base.extras import require_packages
     from diagnostics.base.progress import terminal_stage

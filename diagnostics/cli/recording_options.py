@@ -38,21 +38,19 @@ Teeth = Annotated[str | None, typer.Option("--teeth", metavar="Z1,Z2", help="Tee
 class GearOptions:
     """Which gears a machine has."""
 
-    teeth: Teeth = None
-    config: Annotated[
-        Path | None,
+    teeth: Annotated[
+        str | None,
         typer.Option(
-            "--config",
-            metavar="YAML",
-            help="Configuration with the gears, in the place of --teeth: a `machine` or a planetary set too.",
-            show_default=False,
+            "--teeth",
+            metavar="Z1,Z2 | YAML",
+            help="Teeth of pinion and gear, or the configuration with all gears: a `machine` or a planetary set too.",
         ),
     ] = None
 
     @property
     def given(self) -> bool:
         """Whether the user named gears at all."""
-        return self.teeth is not None or self.config is not None
+        return self.teeth is not None
 
     def train(self, where: str) -> GearTrain:
         """Return the drivetrain of the machine.
@@ -60,20 +58,19 @@ class GearOptions:
         Raises
         ------
         UsageError
-            If neither option came, or both; `where` begins the message.
+            If no gears were given; `where` begins the message.
         """
         from diagnostics.recordings.configured_train import configured_train
         from diagnostics.records.gear_train import pair_train
 
-        if (self.teeth is None) == (self.config is None):
-            came = "nothing" if self.teeth is None else "--teeth and --config"
+        if self.teeth is None:
             raise UsageError(
-                f"{where}: received {came}; give the teeth of pinion and gear, such as --teeth 25,56, or those of all "
-                "meshes by --config gearbox.yaml"
+                f"{where}: received nothing; give the teeth of pinion and gear, such as --teeth 25,56, or the "
+                "configuration with those of all meshes, --teeth gearbox.yaml"
             )
-        if self.config is not None:
-            return configured_train(self.config)
-        return pair_train(two_gears(str(self.teeth)))
+        if self.teeth.endswith((".yaml", ".yml")):
+            return configured_train(Path(self.teeth))
+        return pair_train(two_gears(self.teeth))
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,20 +78,13 @@ class RecordingOptions:
     """How recordings are read."""
 
     fs: Rate = None
-    speed_range: Annotated[
-        str | None,
-        typer.Option(
-            "--speed-range",
-            metavar="LOW,HIGH",
-            help="Without a tacho: range of the first shaft's speed [Hz]; its angle is searched in the mesh lines.",
-        ),
-    ] = None
     speed: Annotated[
         str | None,
         typer.Option(
             "--speed",
-            metavar="SPEED",
-            help="Without a tacho: the first shaft's speed where it is known to 3 %, in Hz or as 1780rpm.",
+            metavar="LOW,HIGH | SPEED",
+            help="Without a tacho: range of the first shaft's speed [Hz], or its speed where it is known to 3 %, in Hz "
+            "or as 1780rpm. Its angle is searched in the mesh lines.",
         ),
     ] = None
     channel: ChannelColumns = None
@@ -119,7 +109,7 @@ class RecordingOptions:
             "--tacho",
             metavar="COLUMN",
             help="Column that tells the angle: waveform or pulse times of a tacho, an angle, counts of an encoder. "
-            "Default: without --speed-range the one that is called so.",
+            "Default: without --speed the one that is called so.",
         ),
     ] = None
     tacho_pulses: Annotated[
@@ -154,7 +144,7 @@ class RecordingOptions:
             self.tacho_pulses,
             tacho_level=self.tacho_level,
             resample_hz=self.resample,
-            tacho_by_name=not (self.speed_range or self.speed),
+            tacho_by_name=not self.speed,
         )
 
     def speed_range_hz(self) -> tuple[float, float] | None:
@@ -163,17 +153,15 @@ class RecordingOptions:
         Raises
         ------
         UsageError
-            If it is no range, or no speed, or both are given.
+            If it is no range, or no speed.
         """
-        if self.speed and self.speed_range:
-            raise UsageError("received --speed and --speed-range; allowed: one of them")
-        if self.speed:
-            return known_speed_range_hz(self.speed)
-        if not self.speed_range:
+        if not self.speed:
             return None
-        low, high = two_numbers(self.speed_range, "--speed-range", "14,26")
+        if "," not in self.speed:
+            return known_speed_range_hz(self.speed)
+        low, high = two_numbers(self.speed, "--speed", "14,26")
         if not 0.0 < low < high < inf:
-            raise UsageError(f"--speed-range: received {low:g} to {high:g} Hz; allowed is 0 < low < high")
+            raise UsageError(f"--speed: received {low:g} to {high:g} Hz; allowed is 0 < low < high")
         return low, high
 
 

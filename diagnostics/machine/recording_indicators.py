@@ -131,7 +131,7 @@ def check_mesh_lines(recording: MeasuredRecording, pulses: ShaftPulses, train: G
     shaft = mesh.names.gears[0]
     raise UsageError(
         f"{recording.path}: no mesh line of {teeth[0]} teeth stands out at {pulses.speed_hz:.4g} Hz of the {shaft}; "
-        f"are these the teeth (--teeth, --config), is the tacho on the {shaft}, and was the machine loaded?"
+        f"are these the teeth (--teeth), is the tacho on the {shaft}, and was the machine loaded?"
     )
 
 

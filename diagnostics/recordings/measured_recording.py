@@ -232,7 +232,7 @@ def _tacho(taken: TakenRecording, fs_hz: float, facts: RecordingFacts) -> np.nda
         seen = ", ".join(f"{name} {0.5 * (low + high):.4g} Hz" for name, (low, high) in spans.items())
         raise UsageError(
             f"{taken.path}: columns that tell the speed of the first shaft disagree ({seen}). Say which is on it, and "
-            f"its pulses per turn: --tacho {columns[0]} --tacho-pulses 1; or leave them out: --speed-range"
+            f"its pulses per turn: --tacho {columns[0]} --tacho-pulses 1; or leave them out: --speed"
         )
     return turns[columns[0]] if columns else None
 
@@ -248,7 +248,7 @@ def _turns(taken: TakenRecording, column: str, fs_hz: float, facts: RecordingFac
     if pulses is None:
         what = "a turn of the encoder counts to" if one.role is ColumnUse.COUNTER else "pulses per turn it gives"
         raise UsageError(
-            f"{path}: column {column} is a {one.role}; say how many {what}: --tacho-pulses 1. Without it: --speed-range"
+            f"{path}: column {column} is a {one.role}; say how many {what}: --tacho-pulses 1. Without it: --speed"
         )
     if one.role is ColumnUse.ANGLE:
         raise UsageError(
@@ -261,7 +261,7 @@ def _turns(taken: TakenRecording, column: str, fs_hz: float, facts: RecordingFac
     if times_s.size < FEWEST_PULSES or not np.isfinite(times_s).all() or not (np.diff(times_s) > 0).all():
         raise UsageError(
             f"{path}: {times_s.size} pulses in column {column}, or not increasing; an angle needs two or more. Name "
-            "the level they cross (--tacho-level), or leave --tacho out and give --speed-range."
+            "the level they cross (--tacho-level), or leave --tacho out and give --speed."
         )
     return np.asarray(times_s[::pulses])
 
@@ -314,7 +314,7 @@ def _whole_turns(path: Path, column: str, turns: np.ndarray, fs_hz: float) -> np
     if not np.isfinite(turns).all() or (rising - turns).max() > 0.5 or rising[-1] - rising[0] < FEWEST_PULSES:
         raise UsageError(
             f"{path}: column {column} turns by {np.ptp(turns):.3g}, or back; allowed: an angle that rises by two turns "
-            "or more. Is --tacho-pulses right? Else leave --tacho out and give --speed-range"
+            "or more. Is --tacho-pulses right? Else leave --tacho out and give --speed"
         )
     marks = np.arange(np.ceil(rising[0]), np.floor(rising[-1]) + 1.0)
     after = np.clip(np.searchsorted(rising, marks), 1, rising.size - 1)

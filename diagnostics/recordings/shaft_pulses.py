@@ -102,7 +102,7 @@ def shaft_pulses(
     elif (span := speed_range_hz or recording.speed_span_hz) is None:
         raise UsageError(
             f"{recording.path}: neither tacho nor speed; name the tacho's column with --tacho, the speed with --speed, "
-            "or the range the first shaft can have run in with --speed-range LOW,HIGH"
+            "or the range the first shaft can have run in with --speed LOW,HIGH"
         )
     else:
         found = _by_mesh_lines(recording, teeth, span)

@@ -97,7 +97,7 @@ def _pulse_problem(record: Recording, ratio: float) -> str:
     if not np.isfinite(pulses).all() or (pulses.size > 1 and not (np.diff(pulses) > 0).all()):
         return (
             "pulse times are not finite and increasing. Correct tacho_s; `siggen-diagnostics indicators` takes "
-            "--speed-range to do without."
+            "--speed to do without."
         )
     turns = max(pulses.size - 1, 0)
     if min(turns, turns / ratio) >= FEWEST_REVOLUTIONS:
@@ -108,7 +108,7 @@ def _pulse_problem(record: Recording, ratio: float) -> str:
     return (
         f"{turns} whole {what} between pulses; {shafts} over at least {FEWEST_REVOLUTIONS} "
         f"revolutions need {int(np.ceil(FEWEST_REVOLUTIONS * max(1.0, ratio)))}. Use longer records (duration_s) or a "
-        "higher speed; without a tacho `siggen-diagnostics indicators` takes --speed-range."
+        "higher speed; without a tacho `siggen-diagnostics indicators` takes --speed."
     )
 
 

@@ -40,6 +40,7 @@ from diagnostics.explore.set_page import COLUMNS, FILTERS  # noqa: E402
 from diagnostics.explore.set_source import set_source  # noqa: E402
 from diagnostics.indicators.table import record_table  # noqa: E402
 from diagnostics.page.security_policy import script_hash  # noqa: E402
+from diagnostics.page.template import page_html  # noqa: E402
 from tests.diagnostics.conftest import memory_dataset  # noqa: E402
 
 GEARBOXES, DURATION_S, TIMES, MANY = 33, 3.0, 10, 101
@@ -195,7 +196,7 @@ def many(source: PageSource) -> PageSource:
 def measure(name: str, source: PageSource, axe: str) -> None:
     """Load a page ten times after a warm-up, and print what was found."""
     program = browser()
-    text = look_page("Records", look_of(source, RecordList(COLUMNS, FILTERS), silent_stage))
+    text = page_html(look_page("Records", look_of(source, RecordList(COLUMNS, FILTERS), silent_stage)))
     runs = [measured(program, instrumented(text, ""), (1280, 800)) for _ in range(TIMES + 1)][1:]
     print(f"| measured, {name}, {len(text.encode()) / 1e6:.1f} MB | median of ten (range) |")
     print("|---|---|")

@@ -18,7 +18,7 @@ from page_pictures import FIGURES
 
 import siggen
 
-GEARS = ("--fs", f"{FS_HZ:g}", "--unit", "m/s2", "--teeth", "18,47", "--speed-range", "33,37")
+GEARS = ("--fs", f"{FS_HZ:g}", "--unit", "m/s2", "--teeth", "18,47", "--speed", "33,37")
 REFERENCES, HEALTHY, DURATION_S = 4, 7, 4.0
 PICTURE = re.compile(r"data:image/png;base64,([A-Za-z0-9+/=]+)")
 

@@ -24,7 +24,7 @@ from tests.publication.conftest import FACTS
 from tests.shared import shared_folder
 from tests.walks.walking import FS_HZ, recorded, run
 
-DESCRIBED = "--unit g --teeth 18,47 --speed-range 28,32"
+DESCRIBED = "--unit g --teeth 18,47 --speed 28,32"
 
 
 class Line(NamedTuple):
@@ -75,8 +75,8 @@ LINES = {
     "siggen-diagnostics baseline": Line(f"april.wav may.wav june.wav july.wav {DESCRIBED} --out OUT/machine"),
     "siggen-diagnostics check": Line("IN/machine august.wav", code=4),
     "siggen-diagnostics calibrate": Line(
-        "rig.yaml april.wav may.wav june.wav july.wav --unit g --speed-range 28,32 --gearboxes 2 --paths 2 "
-        "--compared 2 --out OUT/mine.yaml",
+        "rig.yaml april.wav may.wav june.wav july.wav --unit g --speed 28,32 --gearboxes 2 --paths 2 "
+        "--out OUT/mine.yaml",
     ),
     "siggen-diagnostics explore": Line(f"may.wav june.wav {DESCRIBED} --out OUT/look.html"),
 }

@@ -77,7 +77,7 @@ def test_commands_on_files_show_their_names_and_columns(tmp_path: Path) -> None:
     recording = tmp_path / f"{HOSTILE.replace('/', '|')}.csv"
     column = HOSTILE.replace(",", "")
     np.savetxt(recording, np.zeros((100, 1)), header=column, comments="")
-    gears = ("--fs", "4096", "--teeth", "20,30", "--speed-range", "10,30")
+    gears = ("--fs", "4096", "--teeth", "20,30", "--speed", "10,30")
     shown = re.escape(SHOWN.replace("/", "|"))
     runs: dict[str, Callable[[], Ended]] = {
         "indicators": lambda: command("diagnostics", "indicators", str(recording), *gears),

@@ -12,7 +12,7 @@ from scipy.io import wavfile
 from tests.command import command
 from tests.walks.walking import FS_HZ, printed, recorded
 
-DESCRIBED = "--unit g --teeth 18,47 --speed-range 28,32"
+DESCRIBED = "--unit g --teeth 18,47 --speed 28,32"
 MONTHS = ("april", "may", "june", "july", "august")
 
 

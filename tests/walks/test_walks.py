@@ -112,7 +112,7 @@ def test_from_recordings_of_a_healthy_machine_to_a_verdict(tmp_path: Path) -> No
         (tmp_path / f"{month}.csv").write_text(f"time;vibration;key\n{text}\n")
     for seed, (month, depth) in enumerate({"august": 0.0, "september": 0.7}.items(), 8):
         wavfile.write(tmp_path / f"{month}.wav", round(FS_HZ), recorded(seed, depth).astype(np.float32))
-    described = "--channel vibration=2 --unit g --teeth 18,47 --speed-range 28,32"
+    described = "--channel vibration=2 --unit g --teeth 18,47 --speed 28,32"
     walk(tmp_path, f"siggen-diagnostics baseline april.csv may.csv june.csv july.csv {described} --out machine")
     said = walk(tmp_path, "siggen-diagnostics check machine august.wav september.wav", code=4)
     assert "august.wav: unchanged" in said

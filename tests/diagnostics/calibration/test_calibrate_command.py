@@ -54,7 +54,7 @@ def calibrated(recordings: list[Path]) -> tuple[Path, Path, str]:
     assert made.exit_code == 0, made.output
     rig.write_text(rig.read_text().replace("duration_s: 1.5 ", "duration_s: 0.75 "))  # half as long to simulate
     said = ["calibrate", str(rig), *map(str, recordings[:3]), "--fs", "25600", "--tacho-pulses", "1"]
-    judged = ["--held-out", str(recordings[3]), "--compared", "2"]
+    judged = ["--held-out", str(recordings[3])]
     options = ["--gearboxes", "2", "--paths", "4", *judged, "--out", str(mine)]
     result = CliRunner().invoke(app, [*said, *options], catch_exceptions=False)
     assert result.exit_code == 0, result.output
@@ -97,7 +97,7 @@ def test_recordings_at_half_the_rate_of_the_rig_take_one_call(
         halved = np.stack([*decimate(columns[:, :2], 2, axis=0).T, columns[::2, 2]])
         np.savez(slow[-1], **dict(zip(("ch1_m_s2", "ch2_m_s2", "tacho"), halved, strict=True)))
     said = ["calibrate", str(calibrated[0]), *map(str, slow), "--fs", "12800", "--tacho-pulses", "1"]
-    few = ["--gearboxes", "2", "--paths", "2", "--compared", "0", "--out", str(tmp_path / "slow.yaml")]
+    few = ["--gearboxes", "2", "--paths", "2", "--out", str(tmp_path / "slow.yaml")]
     result = CliRunner().invoke(app, [*said, *few], catch_exceptions=False)
     assert result.exit_code == 0, result.output
     config = siggen.load_config(tmp_path / "slow.yaml")

@@ -149,7 +149,7 @@ BAD: dict[str, tuple[Edit, tuple[str, ...], tuple[str, ...]]] = {
     "constant": (samples(constant), ("channel bearing_vertical", "constant", "3"), ONE),
     "clipped": (samples(clipped), ("channel bearing_vertical", "clipped", "range_m_s2"), ONE),
     "few revolutions": (column("tacho_s", [0.1, 0.13]), ("1 whole turns of the first shaft", "duration_s"), ONE),
-    "no pulses": (column("tacho_s", []), ("0 whole turns of the first shaft", "--speed-range"), ONE),
+    "no pulses": (column("tacho_s", []), ("0 whole turns of the first shaft", "--speed"), ONE),
     "pulses backwards": (column("tacho_s", [0.1, 0.05, 0.2, 0.3]), ("not finite and increasing", "tacho_s"), ONE),
     "unknown teeth": (
         column("teeth_gear", None, ("data", "metadata")), ("received 18, nan", "correct the columns"), ONE,

@@ -134,8 +134,8 @@ def test_records_that_cannot_be_used_are_a_usage_error_with_a_way_out(
     error = capsys.readouterr().err
     assert "not one of 6 records can be used" in error
     assert "they have to last 0.24 s" in error
-    assert run(monkeypatch, "indicators", "x", "--speed-range", "40,30") == 2
-    assert "--speed-range: received 40 to 30 Hz" in capsys.readouterr().err
+    assert run(monkeypatch, "indicators", "x", "--speed", "40,30") == 2
+    assert "--speed: received 40 to 30 Hz" in capsys.readouterr().err
 
 
 def test_columns_that_are_read_exist_in_every_set() -> None:

@@ -99,7 +99,7 @@ def test_predict_names_a_fault_and_says_so(
         "12800",
         "--teeth",
         "18,47",
-        "--speed-range",
+        "--speed",
         "20,50",
         "--unit",
         "m/s2",

@@ -99,7 +99,7 @@ def test_models_of_planetary_sets_judge_sets_and_no_recordings(made: Path) -> No
         "25600",
         "--teeth",
         "25,26",
-        "--speed-range",
+        "--speed",
         "20,30",
     )
     assert told.returncode == 2

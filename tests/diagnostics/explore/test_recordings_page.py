@@ -20,7 +20,7 @@ from tests.diagnostics.explore.test_explorer import Read
 from tests.diagnostics.explore.unpacked import held, listed, rows
 from tests.diagnostics.machine.test_check import FS_HZ, write_recording
 
-FACTS = ("--fs", str(FS_HZ), "--teeth", "20,31", "--speed-range", "20,30", "--unit", "m/s2")
+FACTS = ("--fs", str(FS_HZ), "--teeth", "20,31", "--speed", "20,30", "--unit", "m/s2")
 
 
 def run(*arguments: object) -> str:

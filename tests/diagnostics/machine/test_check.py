@@ -16,7 +16,7 @@ from siggen.errors import SiggenError, UsageError
 
 FS_HZ, TEETH, SECONDS = 8000.0, 20, 2.0
 RIG = ("--fs", FS_HZ, "--teeth", "20,31")
-SEARCHED, TOLD = (*RIG, "--speed-range", "20,30"), (*RIG, "--tacho-pulses", 1)
+SEARCHED, TOLD = (*RIG, "--speed", "20,30"), (*RIG, "--tacho-pulses", 1)
 """Without a tacho the search for the speed takes nine tenths of a check: it is done where it is the subject."""
 
 

@@ -50,7 +50,7 @@ def test_the_command_writes_the_same_numbers_as_a_table(recording: Path, tmp_pat
         "m/s2",
         "--teeth",
         "20,31",
-        "--speed-range",
+        "--speed",
         "20,30",
         "--out",
         str(tmp_path / "found"),
@@ -91,7 +91,7 @@ def pulses(pulses_hz: float) -> np.ndarray:
         ),
         (
             {"key": pulses(25.0), "rpm [rpm]": np.full(16_000, 750.0)},
-            ("--tacho", "key", "--tacho-pulses", "1", "--speed-range", "10,15"),
+            ("--tacho", "key", "--tacho-pulses", "1", "--speed", "10,15"),
             "the tacho gives 25 Hz of the first shaft, outside of 10 to 15 Hz",
         ),
         (
@@ -99,13 +99,13 @@ def pulses(pulses_hz: float) -> np.ndarray:
             ("--tacho-pulses", "1"),
             r"disagree \(tacho 25 Hz, speed 12.5 Hz\)",
         ),
-        ({"side": np.full(16_000, 0.3)}, ("--speed-range", "20,30"), "channel side: constant over all 16000 samples"),
+        ({"side": np.full(16_000, 0.3)}, ("--speed", "20,30"), "channel side: constant over all 16000 samples"),
         (
             {"side": np.where(np.arange(16_000) % 3 == 0, 1e-12, 0.0) + 1.0},
-            ("--speed-range", "20,30"),
+            ("--speed", "20,30"),
             "channel side: .*(stand at|no vibration)",
         ),
-        ({"lid": None}, ("--speed-range", "20,30"), r"0.5 s hold 15 turns of the first shaft at 30 Hz; allowed are 20"),
+        ({"lid": None}, ("--speed", "20,30"), r"0.5 s hold 15 turns of the first shaft at 30 Hz; allowed are 20"),
     ],
     ids=["two tachos", "tacho and range", "tacho and speed", "constant", "rounding alone", "15 turns"],
 )

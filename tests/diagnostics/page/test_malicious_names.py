@@ -82,7 +82,7 @@ def test_the_page_of_a_machine_shows_names_of_files_as_text(tmp_path: Path) -> N
     assert app.info.name == "siggen-diagnostics"
     files = [write_recording(tmp_path / f"<b>healthy\u202e{k}<!--.npz", seed=k) for k in range(4)]
     new = write_recording(tmp_path / "<img src=x onerror=alert(1)>.npz", seed=9)
-    run("baseline", *files, "--fs", FS_HZ, "--teeth", "20,31", "--speed-range", "20,30", "--out", tmp_path / "rig")
+    run("baseline", *files, "--fs", FS_HZ, "--teeth", "20,31", "--speed", "20,30", "--out", tmp_path / "rig")
     run("check", tmp_path / "rig", new)
     check(tmp_path / "rig" / "machine.html", [files[0].name, new.name])
 

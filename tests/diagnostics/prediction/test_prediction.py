@@ -49,7 +49,7 @@ def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
 
 
 def options(*more: str) -> tuple[str, ...]:
-    return ("--fs", "12800", "--teeth", "18,47", "--speed-range", "20,50", "--unit", "m/s2", *more)
+    return ("--fs", "12800", "--teeth", "18,47", "--speed", "20,50", "--unit", "m/s2", *more)
 
 
 def test_a_record_of_the_family_gets_an_answer_with_plot_and_page(
@@ -106,8 +106,8 @@ def test_a_foreign_level_and_foreign_teeth_get_no_answer(
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("--fs", "12800", "--speed-range", "20,50", "--unit", "m/s2"), "teeth unknown"),
-        (("--teeth", "18,47", "--speed-range", "20,50", "--unit", "m/s2"), "sampling rate"),
+        (("--fs", "12800", "--speed", "20,50", "--unit", "m/s2"), "teeth unknown"),
+        (("--teeth", "18,47", "--speed", "20,50", "--unit", "m/s2"), "sampling rate"),
         (options("--channel", "casing=x"), "no channel casing is wanted"),
         (options("--reference", "run.npz"), "without the healthy-referenced variant"),
     ],

@@ -119,7 +119,7 @@ def test_a_gap_in_the_times_is_refused_with_its_place_and_the_longest_whole_piec
     times = TIMES_S + np.where(np.arange(SAMPLES) >= at, jump_s, 0.0)
     whole = f"samples {at + 1} to {SAMPLES}" if at < SAMPLES / 2 else f"samples 1 to {at}"
     file = write(tmp_path, [f"{time:.6f}" for time in times], header)
-    result = CliRunner().invoke(app, ["indicators", str(file), "--teeth", "20,31", "--speed-range", "20,30"])
+    result = CliRunner().invoke(app, ["indicators", str(file), "--teeth", "20,31", "--speed", "20,30"])
     assert isinstance(result.exception, UsageError)
     assert re.search(said, str(result.exception))
     assert f"{whole} are the longest whole piece" in str(result.exception)

@@ -117,7 +117,7 @@ def test_the_command_ends_with_one_sentence_where_a_file_was_cut(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     content, path = sound(kind).read_bytes(), tmp_path / f"run.{kind}"
-    command = ["siggen-diagnostics", "indicators", str(path), "--teeth", "20,30", "--speed-range", "20,30"]
+    command = ["siggen-diagnostics", "indicators", str(path), "--teeth", "20,30", "--speed", "20,30"]
     monkeypatch.setattr(sys, "argv", command)
     for share in (0.0, 0.01, 0.4, 0.6, 0.99):  # at 0.5 lies the end of the first of two equal records: a whole file
         path.write_bytes(content[: int(share * len(content))])

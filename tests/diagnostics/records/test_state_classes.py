@@ -18,6 +18,8 @@ from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.judging.of_split import NetworkOptions, Training, train_models, training_metrics
 from diagnostics.judging.sets import OtherSet, check_other_set, set_table
 from diagnostics.loader.window_index import StreamSettings, window_index
+from diagnostics.page.blocks import Page
+from diagnostics.page.template import page_html
 from diagnostics.prediction.model_facts import read_facts
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.report.classifier_tables import detection_blocks
@@ -118,7 +120,7 @@ def test_the_loader_gives_states_and_classes(twice: Any) -> None:
 def test_page_card_and_model_say_what_the_healthy_class_holds(
     twice: Any, table_of_twice: pa.Table, training: Training, tmp_path: Path
 ) -> None:
-    page = " ".join([scores_sentence(training), *detection_blocks(training)])
+    page = scores_sentence(training) + page_html(Page("x", detection_blocks(training)))
     page = page.replace("\N{NO-BREAK SPACE}", " ").replace("<wbr>", "")
     for text in (
         "The class healthy holds the records of healthy, healthy_again",

@@ -6,6 +6,8 @@ import math
 
 import pytest
 
+from diagnostics.page.blocks import Page
+from diagnostics.page.template import page_html
 from diagnostics.records.gear_train import PAIR
 from diagnostics.report.indicators import best_by_state, indicator_findings, undefined_html
 from diagnostics.statistics.evaluation import Interval
@@ -89,7 +91,7 @@ def test_sets_that_allow_no_finding(states: tuple[str, ...], specimens: int, tex
 def test_indicators_that_lack_only_records_that_were_left_out_are_not_called_undefined() -> None:
     found = [result("rms", {"slight": state(0.9)}), result("fm4", {"slight": state(0.9)})]
     found[1].defined_share = 0.7
-    page = undefined_html(found, {"x": 0.1})  # both lack a tenth; fm4 lacks two more
+    page = page_html(Page("x", [undefined_html(found, {"x": 0.1})]))  # both lack a tenth; fm4 lacks two more
     assert "rms__x" not in page
     assert "<td>20.0</td>" in page
-    assert undefined_html(found[:1], {"x": 0.1}) == ""
+    assert not undefined_html(found[:1], {"x": 0.1})
