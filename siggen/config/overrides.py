@@ -79,6 +79,8 @@ def _below(place: Any, part: str, path: str) -> Any:
         return place[_index(place, part, path)]
     if not isinstance(place, dict):
         raise _not_a_container(place, path)
+    if part == "0" and "kind" in place and path.endswith(".damage"):
+        return place  # a single damage is the first of its state
     if place.get(part) is None:
         place[part] = {}
     if not path and part in BY_WORD:

@@ -14,7 +14,7 @@ from siggen.damage.crack_law import DEEPEST_SHARE
 from siggen.damage.pits import clustered_centres, layered_centres
 from siggen.gears.gear_pair import Gear, GearPair
 from siggen.gears.spur_gear import root_chord
-from siggen.library.arguments import finite, of_kind, refused
+from siggen.library.arguments import finite, of_kind, refused, saying
 from siggen.names import PINION, Side
 from siggen.seeding import Stream, generator
 
@@ -273,10 +273,23 @@ def all_damages(damages: object) -> tuple[Damage, ...]:
     """
     allowed = "a sequence of Pit, Spall, Crack, ..., or of a class of Damage with missing_m"
     found: tuple[Damage, ...] = tuple(of_kind("damages", damages, Iterable, allowed))  # type: ignore[type-abstract]
-    for one in found:
+    for number, one in enumerate(found):
         if not isinstance(one, Damage) or type(one) is Damage:
-            raise refused("damages", repr(one), allowed)
+            raise refused(f"damages[{number}]", repr(one), allowed)
     return found
+
+
+def _check_numbers(one: Damage, seat: DamagedPlace) -> None:
+    """Refuse a tooth that there is not, and what is no number where one belongs."""
+    if not isinstance(one, (Wear, BearingSpall)):
+        last = seat.gear.teeth - 1
+        allowed = f"a whole number from 0 to {last}"
+        tooth = of_kind("tooth", one.tooth, Integral, allowed)  # type: ignore[type-abstract]
+        finite("tooth", tooth, allowed, 0, last)
+    for own in () if one.is_shape else fields(one):
+        value = getattr(one, own.name)
+        if own.default is None or type(own.default) is float:
+            finite(own.name, 0.0 if value is None else value, "a number")
 
 
 def entries(
@@ -293,19 +306,12 @@ def entries(
     listed: dict[str, dict[str, Any]] = {}
     arguments: dict[str, str] = {}
     for number, one in enumerate(all_damages(damages)):
-        seat = seat_of(one)
-        if not isinstance(one, (Wear, BearingSpall)):
-            last = seat.gear.teeth - 1
-            allowed = f"a whole number from 0 to {last}"
-            tooth = of_kind("tooth", one.tooth, Integral, allowed)  # type: ignore[type-abstract]
-            finite("tooth", tooth, allowed, 0, last)
-        if one.is_shape:
-            continue
-        for own in fields(one):
-            value = getattr(one, own.name)
-            if own.default is None or type(own.default) is float:
-                finite(own.name, 0.0 if value is None else value, "a number")
-        entry, place = one._entry(seat), str(len(found))  # type: ignore[attr-defined]
+        with saying({"": f"damages[{number}]."}):
+            seat = seat_of(one)
+            _check_numbers(one, seat)
+            if one.is_shape:
+                continue
+            entry, place = one._entry(seat), str(len(found))  # type: ignore[attr-defined]
         if key := LISTS.get(type(one)):
             if seat.word not in listed:
                 listed[seat.word] = {"kind": "list"}

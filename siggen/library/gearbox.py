@@ -184,7 +184,8 @@ class Gearbox:
             raise refused("State.name", repr(state.name), "a name that this gearbox has not yet")
         if self._design.lives:
             raise refused("more", repr(state), "no states for a gearbox that lives and fails by its set")
-        damage, arguments = entries(state.damages, self._seat)
+        with saying({"damages": f"State {state.name}: damages"}):
+            damage, arguments = entries(state.damages, self._seat)
         entry = {"damage": damage, "acts": not state.sham} if damage else {}
         canonical, key = self._design.canonical(), f"states.{state.name}"
         named = {f"{key}.damage.{place}.": f"State {state.name}: {argument}." for place, argument in arguments.items()}
@@ -192,9 +193,11 @@ class Gearbox:
         with saying({**named, key: f"state {state.name}"}):
             design = load_config({**canonical, "states": {**canonical["states"], state.name: entry}})
         made = replace(self, states=(*self.states, state), _design=design, _added=(*self._added, state))
-        for section in made._shapes(state):
-            for problem in section.place_problems(self._seat(section.damage).pair):
-                raise UsageError(f"{type(section.damage).__name__}.{problem}")
+        places = [number for number, one in enumerate(state.damages) if one.is_shape]
+        for place, section in zip(places, made._shapes(state), strict=True):
+            with saying({"": f"State {state.name}: damages[{place}]."}):
+                for problem in section.place_problems(self._seat(section.damage).pair):
+                    raise UsageError(str(problem))
         return made
 
     def _shapes(self, state: State) -> tuple[ShapeFault, ...]:

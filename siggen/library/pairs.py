@@ -237,22 +237,26 @@ def _draw_shapes(ax: Any, pair: GearPair, shapes: Sequence[LostShape], shades: A
                   cmap=shades.cmap, norm=shades.norm, shading="nearest", rasterized=True)  # fmt: skip
 
 
+def _seat(pair: GearPair, damage: Damage) -> DamagedPlace:
+    side = one_of("on", damage.on, SECTIONS)
+    return DamagedPlace(pair, Side(side), side)
+
+
 def _parts(pair: GearPair, damages: Iterable[Damage] | str, law: str, loads: Any) -> Parts:
     """Return damages on the teeth of a pair."""
     of_kind("pair", pair, GearPair, "a GearPair, such as GearPair.of(teeth=(18, 47), module_mm=3.5, face_width_mm=20)")
     damages = all_damages(damages)
-    for one in damages:
-        one_of("on", one.on, SECTIONS)
-    written, arguments = entries(damages, lambda one: DamagedPlace(pair, Side(one.on), one.on))
+    written, arguments = entries(damages, partial(_seat, pair))
+    shapes = [(number, one) for number, one in enumerate(damages) if one.is_shape]
+    arguments |= {str(len(written) + i): f"damages[{number}]" for i, (number, _) in enumerate(shapes)}
     with saying({f"damages.{place}.": f"{argument}." for place, argument in arguments.items()}):
         sections = damage_sections(written)
-        shapes = [one for one in damages if one.is_shape]
-        sections += tuple(ShapeFault(gear=one.on, number=i, damage=one) for i, one in enumerate(shapes))
-        problems = [
-            Problem(f"damages.{i}.{problem.path}", problem.received, problem.allowed)
-            for i, section in enumerate(sections)
-            for problem in section.place_problems(pair)
-        ]
+        sections += tuple(ShapeFault(gear=one.on, number=i, damage=one) for i, (_, one) in enumerate(shapes))
+        problems: list[Problem] = []
+        for i, section in enumerate(sections):
+            with saying({"missing_m": f"damages.{i}.missing_m"}):
+                found_here = list(section.place_problems(pair))
+            problems += [Problem(f"damages.{i}.{one.path}", one.received, one.allowed) for one in found_here]
         if problems:
             raise ConfigError(problems)
     if law == "linear" and any(one.needs_pairs for one in sections):

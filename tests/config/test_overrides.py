@@ -19,6 +19,7 @@ from tests.config.minimal import MINIMAL, minimal
         ("dynamics.pinion.mass_kg=1", {"dynamics__pinion__mass_kg": 1}),  # section left out in the file
         ("operating_points.0.speed_hz=25", {"operating_points__0__speed_hz": 25}),
         ("states.slight.damage.pits_per_layer=3", {"states__slight__damage__pits_per_layer": 3}),
+        ("states.slight.damage.0.pits_per_layer=3", {"states__slight__damage__pits_per_layer": 3}),  # the only one
         (
             "gears.module_mm=[2, 4]",
             {"gears__module_mm": [2, 4]},

@@ -34,6 +34,16 @@ class Dent(Damage):
 
 
 @dataclass(frozen=True)
+class Loose(Damage):
+    """Gives what is no depth for each point."""
+
+    given: object = None
+
+    def missing_m(self, gear: Gear, profile_m: FloatArray, face_m: FloatArray) -> FloatArray:
+        return self.given  # type: ignore[return-value]
+
+
+@dataclass(frozen=True)
 class Groove(Damage):
     """Through the whole face: known to contacts as a spall too."""
 
@@ -193,10 +203,10 @@ BAD = [
         [Pit(height_mm=20.0)],
         r"^damages\[0\].height_mm: received height 20 mm; allowed: centre on the involute flank",
     ),
-    ([Pit("lid")], "on: received 'lid'; allowed: pinion, gear"),
+    ([Dent(), Pit("lid")], r"^damages\[1\].on: received 'lid'; allowed: pinion, gear"),
     ([Pit(tooth=40)], "tooth: received 40; allowed: a whole number from 0 to 17"),
-    ([Crack(tooth=2.5)], "^tooth: received 2.5; allowed: a whole number"),  # type: ignore[arg-type]
-    ([Chip(width_mm=30.0)], "^width_mm: received 30.0; allowed: above 0 up to 20, the face"),
+    ([Crack(tooth=2.5)], r"^damages\[0\].tooth: received 2.5; allowed: a whole number"),  # type: ignore[arg-type]
+    ([Chip(width_mm=30.0)], r"^damages\[0\].width_mm: received 30.0; allowed: above 0 up to 20, the face"),
     ([Dent(), Crack(), Pit(), Pit(depth_mm=9.0)], r"^damages\[3\].depth_mm: received depth 9 mm"),
     ([Spall(outline_mm=((1, 1), (2, 1), (2, 99)))], r"^damages\[0\].outline_mm: received face 50 mm"),
     ([Spall(outline_mm=((1, 1), (2, 1), (2, 3)), edge_radius_mm=9.0)], r"^damages\[0\].edge_radius_mm: received 9.0"),
@@ -207,9 +217,12 @@ BAD = [
     ([Chip(height_mm=90.0)], "height_mm: received 90; allowed: up to 7.875, the height of the tooth"),
     ([Spall(outline_mm=((1, 2), (2, 3)))], "outline_mm: received .*; allowed: three corners or more"),
     ([Spall(outline_mm=((1, 2), (2, 4), (1.5, 2.5), (1, 4)))], "outline_mm: received an outline that crosses itself"),
-    ([Dent(depth_um=-5.0)], "missing_m: received depths from .*; allowed: finite depths of at least 0"),
-    ([Damage()], "damages: received .*; allowed: a sequence of Pit, Spall, Crack"),
-    (["pit"], "damages: received 'pit'; allowed: a sequence of Pit, Spall, Crack"),
+    ([Dent(depth_um=-5.0)], r"^damages\[0\].missing_m: received depths from .*; allowed: finite depths of at least 0"),
+    ([Pit(), Loose(given=1.0)], r"^damages\[1\].missing_m: received 1.0; allowed: an array \(\d+,\) of numbers \[m\]"),
+    ([Loose(given=np.zeros(3))], r"^damages\[0\].missing_m: received an array \(3,\) of float64; allowed: an array"),
+    ([Loose(given="deep")], "missing_m: received 'deep'; allowed: an array"),
+    ([Damage()], r"damages\[0\]: received .*; allowed: a sequence of Pit, Spall, Crack"),
+    ([Pit(), "pit"], r"damages\[1\]: received 'pit'; allowed: a sequence of Pit, Spall, Crack"),
     (Pit(), "damages: received Pit.*; allowed: a sequence of Pit, Spall, Crack"),
 ]
 
@@ -242,11 +255,11 @@ def test_what_a_law_or_a_gearbox_has_not_is_refused() -> None:
     for state, said in (
         (State("1st", (Pit(),)), "State.name: received '1st'; allowed: letters"),
         (State("healthy"), "State.name: received 'healthy'; allowed: a name that this gearbox has not yet"),
-        (State("far", (Pit("sun"),)), "on: received 'sun'; allowed: pinion, gear"),
+        (State("far", (Pit("sun"),)), r"State far: damages\[0\].on: received 'sun'; allowed: pinion, gear"),
         (State("far", (siggen.BearingSpall("lid"),)), "on: received 'lid'; allowed: input.bearing, output.bearing"),
         (State("deep", (Pit(depth_mm=5.0),)), r"State deep: damages\[0\].depth_mm: received depth 5 mm"),
         (State("bare", Pit()), "damages: received Pit.*; allowed: a sequence of Pit"),  # type: ignore[arg-type]
-        (State("dent", (Dent(depth_um=-1.0),)), "Dent.missing_m: received depths from"),
+        (State("dent", (Dent(depth_um=-1.0),)), r"State dent: damages\[0\].missing_m: received depths from"),
     ):
         with pytest.raises(UsageError, match=said):
             gearbox.with_(state)
