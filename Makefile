@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-EXTRAS := diagnostics,cnn,s3,recordings,mdf,notebooks,dev
+EXTRAS := diagnostics,cnn,recordings,mdf,notebooks,dev
 DEMO := runs/quickstart
 # TARGETS only exists after an install that was complete; a change of the pins installs again.
 STAMP := $(VENV)/.installed

@@ -7,7 +7,7 @@ import platform
 from pathlib import Path
 
 from siggen.dataset.environment import environment
-from siggen.engines.processes import default_workers
+from siggen.workers.choice import default_workers
 
 QUIET_LOAD = 0.5
 """Load average above which somebody else's work shows in the numbers."""

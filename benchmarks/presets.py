@@ -6,10 +6,12 @@ import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+import pyarrow as pa
+
 from benchmarks.row import Row, duration_text
 from benchmarks.shipped import ROOT, shipped
-from siggen.columns.record import SimulatedRecord, record_batch, record_schema
-from siggen.dataset.shard import table_draft
+from siggen.columns.record import SimulatedRecord, record_batch
+from siggen.dataset.shard import packed
 from siggen.dataset.storage import LocalFolder
 from siggen.gearbox.design import SetDesign
 from siggen.gearbox.plan import planned_record, record_ids_of
@@ -53,10 +55,7 @@ def _costs(config: SetDesign, gearbox: int) -> dict[str, float]:
         results = list(simulated(config, chosen))
         records = [result for result in results if isinstance(result, SimulatedRecord)]
         with stage("writing"), tempfile.TemporaryDirectory() as folder:
-            columns = set_columns(config)
-            draft = table_draft(LocalFolder(Path(folder)), "data.parquet", record_schema(columns), len(records))
-            with draft as data:
-                data.add(record_batch(columns, records))
-                data.finish()
+            table = pa.Table.from_batches([record_batch(set_columns(config), records)])
+            LocalFolder(Path(folder)).put("data.parquet", packed(table))
     shared = {"plan": len(ids), "tables": RECORDS * len(ids) / len(states)}
     return {name: value / shared.get(name, RECORDS) / config.duration_s for name, value in times.seconds.items()}

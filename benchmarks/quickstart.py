@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from benchmarks.row import Row, cost_row
 from benchmarks.shipped import QUICKSTART, shipped
 from benchmarks.workers import run_facts
-from siggen.engines.processes import default_workers
+from siggen.workers.choice import default_workers
 
 GOAL_S = 60.0
 

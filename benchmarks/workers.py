@@ -8,7 +8,6 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
-from pathlib import Path
 from statistics import median
 
 from benchmarks.row import Row, duration_text
@@ -24,9 +23,7 @@ def rows(*, quick: bool) -> Iterator[Row]:
     """Yield the gain of a second worker, and the largest worker's memory by length of record."""
     yield from _gain_rows(specimens=4 if quick else 12, pairs=1 if quick else 5)
     for duration_s in DURATIONS_S:
-        used = run_facts(MEMORY_WORKERS, "specimens=2", f"duration_s={duration_s}")["peak_memory_bytes"][
-            "largest_worker"
-        ]
+        used = run_facts(MEMORY_WORKERS, "specimens=2", f"duration_s={duration_s}")["largest_worker"]
         bare = _import_memory_bytes()
         yield Row(
             f"peak memory of a worker, records of {duration_s} s",
@@ -39,21 +36,28 @@ def rows(*, quick: bool) -> Iterator[Row]:
 
 
 def run_facts(workers: int, *overrides: str) -> dict:
-    """Generate the quickstart with overrides in a process of its own and return the content of run.json.
+    """Generate the quickstart with overrides in a process of its own: seconds, records, bytes of the largest worker.
 
     Raises
     ------
     RuntimeError
         If the generation fails; holds what it said.
     """
-    command = [str(Path(sys.executable).with_name("siggen")), "generate", str(QUICKSTART), "--workers", str(workers)]
-    for override in overrides:
-        command += ["--set", override]
     with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run([*command, "--out", folder], check=False, capture_output=True, text=True)
+        command = [sys.executable, "-m", "benchmarks.workers", folder, str(workers), *overrides]
+        done = subprocess.run(command, check=False, capture_output=True, text=True)
         if done.returncode:
-            raise RuntimeError(f"siggen generate ended with {done.returncode}: {done.stderr.strip()}")
-        return json.loads((Path(folder) / "run.json").read_text())
+            raise RuntimeError(f"siggen.generate ended with {done.returncode}: {done.stderr.strip()}")
+        return json.loads(done.stdout)
+
+
+def _generate(folder: str, workers: str, *overrides: str) -> None:
+    import siggen
+    from siggen.dataset.environment import peak_memory_bytes
+
+    done = siggen.generate(siggen.load_config(QUICKSTART, overrides), folder, int(workers))
+    facts = {"seconds": done.seconds, "records_made": done.records_made}
+    sys.stdout.write(json.dumps({**facts, "largest_worker": peak_memory_bytes()["largest_worker"]}))
 
 
 def _gain_rows(specimens: int, pairs: int) -> Iterator[Row]:
@@ -98,3 +102,7 @@ def _import_memory_bytes() -> int:
         "print(peak_memory_bytes()['largest_worker'])"
     )
     return int(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout)
+
+
+if __name__ == "__main__":  # python -m benchmarks.workers FOLDER WORKERS PATH=VALUE...; workers import this file
+    _generate(*sys.argv[1:])

@@ -25,15 +25,13 @@ if TYPE_CHECKING:
     from siggen.library.running import run, runs
     from siggen.library.sensors import Channel, Reading, Sensor
     from siggen.publication.publish import publish
-    from siggen.sets.extension import extend
     from siggen.sets.generation import generate
-    from siggen.sets.parts import generate_part, merge
     from siggen.sets.recorded_set import write_recorded_set
 
 __all__ = [
     "BearingSpall", "Case", "Channel", "Chip", "Crack", "Curve", "Damage", "Gear", "GearPair", "Gearbox",
     "LineOrders", "Pit", "Point", "Reading", "Record", "Sensor", "Spall", "Spectrum", "State", "Wear", "draw",
-    "extend", "flank_picture", "generate", "generate_part", "load_config", "machine", "merge", "mesh_stiffness",
+    "flank_picture", "generate", "load_config", "machine", "mesh_stiffness",
     "open", "pits_in_layers", "plan", "planetary", "publish",
     "random_pits", "run", "runs", "single_stage", "write_csv", "write_recorded_set",
 ]  # fmt: skip
@@ -53,9 +51,7 @@ _NAMES = {
     "siggen.library.sensors": "Channel Reading Sensor",
     "siggen.gearbox.plan": "plan",
     "siggen.publication.publish": "publish",
-    "siggen.sets.extension": "extend",
     "siggen.sets.generation": "generate",
-    "siggen.sets.parts": "generate_part merge",
     "siggen.sets.recorded_set": "write_recorded_set",
 }
 """Module -> public names that it defines."""

@@ -27,7 +27,7 @@ def counted(count: int, one: str, many: str = "") -> str:
 
 
 def how_to_install(extras: str) -> str:
-    """Return how to install siggen with extras, given as "cnn" or "cnn,s3", for a message."""
+    """Return how to install siggen with extras, given as "cnn" or "cnn,dask", for a message."""
     return (
         f"`pip install '.[{extras}]'` in a checkout, `pip install 'WHEEL[{extras}]'` with a wheel's file "
         "(docs/start/install.md)"
@@ -91,7 +91,7 @@ class VerificationError(SiggenError):
 
 
 class EngineError(SiggenError):
-    """Workers that died more often than the engine restarts them."""
+    """A task that raised, or workers that kept dying."""
 
 
 class SolverFailure(SiggenError):  # noqa: N818 - a status of a record, not a fault of the program

@@ -86,12 +86,17 @@ def _writer() -> tuple[str, int]:
     return hashlib.sha256(f"{here['host']} {here['boot']}".encode()).hexdigest()[:8], here["pid"]
 
 
-def _delete_leftovers(target: Path) -> None:
-    """Delete drafts of a file whose processes are gone; those of other machines stay."""
+def is_of_dead_process(name: str) -> bool:
+    """Tell whether a draft is of a process of this machine that is gone; those of other machines are not known."""
     machine, _ = _writer()
-    draft = re.compile(rf"\.{re.escape(target.name)}\.{machine}-(\d+)-[0-9a-f]{{8}}{re.escape(LEFTOVER_SUFFIX)}")
+    form = re.fullmatch(rf"\..*\.{machine}-(\d+)-[0-9a-f]{{8}}{re.escape(LEFTOVER_SUFFIX)}", name)
+    return form is not None and is_gone({**this_process(), "pid": form[1]})
+
+
+def _delete_leftovers(target: Path) -> None:
+    """Delete drafts of a file whose processes are gone."""
     for path in target.parent.iterdir():
-        if (match := draft.fullmatch(path.name)) and is_gone({**this_process(), "pid": match[1]}):
+        if path.name.startswith(f".{target.name}.") and is_of_dead_process(path.name):
             path.unlink(missing_ok=True)
 
 

@@ -23,7 +23,7 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
 def one_worker() -> Iterator[None]:
     """Commands that are not told how many workers start one, not one per core: each start costs ten short records."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("siggen.engines.registry.default_workers", lambda: 1)
+        patch.setattr("siggen.workers.choice.default_workers", lambda: 1)
         yield
 
 

@@ -43,7 +43,7 @@ def test_a_wheel_and_a_checkout_of_the_same_sources_have_the_same_digest(install
         ("seeding.py", True),
         ("cli/app.py", False),
         ("views/record.py", False),
-        ("engines/dask_engine.py", False),
+        ("workers/clusters.py", False),
         ("publication/publish.py", False),
     ],
 )

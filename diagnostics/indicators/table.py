@@ -69,7 +69,7 @@ def table_file(dataset: Dataset, settings: IndicatorSettings, channels: Sequence
     if not (folder / "manifest.json").is_file():
         return None
     folder = folder.resolve()
-    files = sorted(name for name in dataset.files if name.startswith(("data/", "metadata/")))
+    files = sorted(name for name in dataset.files if name.startswith(("data/", "labels.")))
     facts = [(name, *_stat(folder / name)) for name in files]
     state = _digest([dataset.manifest, facts, _code_digest()])
     chosen = _digest([asdict(settings), list(channels)])

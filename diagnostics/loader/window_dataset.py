@@ -73,7 +73,7 @@ class WindowDataset(TorchDataset[Sample]):  # type: ignore[misc]  # the type che
         chosen = settings or StreamSettings()
         dataset = of_quantity(dataset, chosen.quantity)
         self.index = window_index(dataset, split, chosen, labels)
-        self.signals = RowGroupSignals(dataset, split, dataset.row_groups(split), chosen, self.index, cache)
+        self.signals = RowGroupSignals(dataset, split, dataset.shards(split), chosen, self.index, cache)
         self.transform, self.seed = transform, seed
         # shared, so that copies in worker processes count on where an earlier epoch's stopped
         self._drawn = torch.zeros(self.index.size, dtype=torch.int64).share_memory_()

@@ -17,7 +17,7 @@ import pyarrow as pa
 
 from diagnostics.records.gear_train import in_column
 from diagnostics.records.record_classes import STATE, check_kind, set_classes
-from siggen.dataset.reading import Dataset, RowGroup
+from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, UsageError
 
 OUTLINE = "outline_mm"
@@ -228,7 +228,7 @@ def window_index(dataset: Dataset, split: str, settings: StreamSettings, further
     """
     labels = {**_columns(dataset, split, LABELS), "class_id": _class_id(dataset, split, settings.classes)}
     labels |= record_labels(dataset, split, [name for name in further if name not in labels])
-    pulses = [list(_pulses(dataset, group)) for group in dataset.row_groups(split)]
+    pulses = [list(_pulses(dataset.shard_rows(one, ["tacho_s"]))) for one in dataset.shards(split)]
     samples = _window_samples(pulses, settings, dataset.fs_hz)
     recorded = round(dataset.duration_s * dataset.fs_hz)
     rows, lengths, angles, record = [], [], [], 0
@@ -262,8 +262,8 @@ def _class_id(dataset: Dataset, split: str, kind: str) -> np.ndarray:
     return set_classes(dataset, kind).places(np.asarray(states))
 
 
-def _pulses(dataset: Dataset, group: RowGroup) -> Iterator[np.ndarray]:
-    column = dataset.row_group(group, ["tacho_s"]).column("tacho_s")
+def _pulses(rows: pa.RecordBatch) -> Iterator[np.ndarray]:
+    column = rows.column("tacho_s")
     yield from (np.asarray(column[row].values, dtype=np.float64) for row in range(len(column)))
 
 

@@ -41,8 +41,8 @@ class RowGroupSignals:
         What `siggen.open` returned.
     split : str
         Its split.
-    groups : tuple of RowGroup
-        What `dataset.row_groups(split)` returned; asking for it again would read every footer again.
+    groups : tuple of ListedShard
+        What `dataset.shards(split)` returned.
     settings : StreamSettings
         Angle steps, or samples as they were taken.
     index : WindowIndex
@@ -69,7 +69,7 @@ class RowGroupSignals:
 
     def _decoded(self, number: int, rows: Iterable[int]) -> dict[int, Sequence[np.ndarray]]:
         columns = [channel.column for channel in self.dataset.channels]
-        batch = self.dataset.row_group(self.groups[number], [*columns, "tacho_s"])
+        batch = self.dataset.shard_rows(self.groups[number], [*columns, "tacho_s"])
         signals = [batch.column(name).flatten().to_numpy().reshape(batch.num_rows, -1) for name in columns]
         return {row: self._record([s[row] for s in signals], batch.column("tacho_s")[row]) for row in rows}
 

@@ -111,7 +111,7 @@ class WindowStream(IterableDataset[Any]):  # type: ignore[misc]  # the type chec
         self.shuffling = shuffling or Shuffling()
         self.index = window_index(dataset, split, chosen, labels)
         self.transform = transform
-        self.signals = RowGroupSignals(dataset, split, dataset.row_groups(split), chosen, self.index, cache)
+        self.signals = RowGroupSignals(dataset, split, dataset.shards(split), chosen, self.index, cache)
         # how often each worker began an epoch; shared, since a DataLoader makes new copies of the stream every time
         self._begun = torch.zeros(MOST_WORKERS, dtype=torch.int64).share_memory_()
         self.position = Position()

@@ -36,7 +36,7 @@ NAME = re.compile(r"[a-z0-9_]{1,60}")
 """Of a test part: that of a folder."""
 PER_PART = 1_000_000
 """Numbers of records of a part begin at its place, from 1, times this: one file may hold predictions for all parts."""
-BOUND = ("data/", "metadata/", "life/")
+BOUND = ("data/", "labels.", "life/")
 """Files of a part that the digest holds: rows. Cards may be mended."""
 
 

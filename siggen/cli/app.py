@@ -12,12 +12,10 @@ import typer
 from siggen.cli.echo import echo
 from siggen.cli.errors import errors
 from siggen.cli.export_model import export_model
-from siggen.cli.extend import extend
 from siggen.cli.flank import flank
 from siggen.cli.generate import generate
 from siggen.cli.init import init
 from siggen.cli.life import life
-from siggen.cli.merge import merge
 from siggen.cli.modes import modes
 from siggen.cli.path import path
 from siggen.cli.plan import plan
@@ -34,7 +32,7 @@ from siggen.errors import EXIT_INTERRUPTED, EXIT_UNEXPECTED, EXIT_USAGE, SiggenE
 TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 # Command files import nothing slow at their top, so that all of them together start at once.
-COMMANDS = (init, plan, generate, merge, extend, verify, publish, show, simulate, export_model, schema)
+COMMANDS = (init, plan, generate, verify, publish, show, simulate, export_model, schema)
 INSPECTED: dict[str, Callable[..., None]] = {
     "tvms": tvms,
     "flank": flank,

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from siggen.cli.echo import echo
-from siggen.cli.engine_options import EngineOptions
 from siggen.cli.option_groups import grouped
 from siggen.cli.run_display import LogJson, run_shown
+from siggen.cli.worker_options import WorkerOptions
 from siggen.errors import counted
 
 if TYPE_CHECKING:
@@ -28,13 +28,13 @@ def generate(
     ],
     out: Annotated[
         Path,
-        typer.Option("--out", help="Folder or s3://... of the set: new, empty, or begun before."),
+        typer.Option("--out", help="Folder or s3://... of the set: new, empty, begun, or with fewer gearboxes."),
     ],
     *,
-    engine: EngineOptions,
+    who: WorkerOptions,
     part: Annotated[
         str | None,
-        typer.Option("--part", help="Only part i of N, in a folder of its own, for job arrays.", metavar="i/N"),
+        typer.Option("--part", help="Only every N-th shard from the i-th on, for job arrays.", metavar="i/N"),
     ] = None,
     log_json: LogJson = None,
     overrides: Annotated[
@@ -42,10 +42,13 @@ def generate(
         typer.Option("--set", help="Replace a value, such as gears.module_mm=3.5.", metavar="PATH=VALUE"),
     ] = None,
 ) -> None:
-    """Generate a data set; the same command continues an interrupted one.
+    """Generate a data set; the same command continues an interrupted one, and adds gearboxes to a finished one.
 
-    With --part i/N every job makes its shards in a folder of its own, knowing nothing of the others; `siggen merge`
-    puts the parts together.
+    With --part i/N every job makes its shards, knowing nothing of the others, all in one folder. The same command
+    without --part makes what is missing and ends the set.
+
+    More gearboxes (--set specimens=...) leave finished shards as they are: every record is the one that a set generated
+    at once would have.
 
     Exit codes: 0 done, 2 wrong configuration or folder, 3 records failed (done without them, or stopped by
     --allowed-loss), 130 interrupted.
@@ -54,27 +57,24 @@ def generate(
     """
     from siggen.checks.loading import load_config
     from siggen.checks.plausibility import implausible
-    from siggen.engines.processes import default_workers
     from siggen.errors import EXIT_RECORDS_FAILED
     from siggen.sets.compilation import compilation_text
     from siggen.sets.generation import generate as generate_set
-    from siggen.sets.parts import generate_part, part_of
+    from siggen.sets.generation import part_of
+    from siggen.workers.choice import default_workers
 
     loaded = load_config(config, overrides or ())
     chosen = None if part is None else part_of(part)
     with run_shown(log_json, out) as shown:
         for sentence in implausible(loaded.possible):
             shown.say(f"implausible: {sentence}")
-        workers = default_workers() if engine.workers is None else engine.workers
+        workers = default_workers() if who.workers is None else who.workers
         if text := compilation_text(loaded.method, workers):
             shown.say(text)
-        (runner, count), progress = engine.runner(), shown.progress
-        told: dict[str, Any] = {"events": shown.events, "allowed_loss": engine.allowed_loss}
-        if chosen is None:
-            generation = generate_set(loaded, out, count, progress, engine=runner, **told)
-        else:
-            generation = generate_part(loaded, out, chosen, count, progress, engine=runner, **told)
-    report(generation, "the set" if chosen is None else f"part {chosen.number} of {chosen.of}", shown.say)
+        told: dict[str, Any] = {"events": shown.events, "allowed_loss": who.allowed_loss}
+        on: dict[str, Any] = {"part": chosen, "executor": who.executor, "address": who.address}
+        generation = generate_set(loaded, out, who.workers, shown.progress, **on, **told)
+    report(generation, "the set" if chosen is None else "part {} of {}".format(*chosen), shown.say)
     echo(str(generation.path))
     if generation.failures:
         raise typer.Exit(EXIT_RECORDS_FAILED)

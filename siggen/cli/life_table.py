@@ -110,8 +110,8 @@ def cost_summary(cost: SetCost, summary: dict[str, Any], design: SetDesign) -> d
 
 def cost_text(found: dict[str, Any]) -> str:
     """Return the CPU hours and what they take here in words, with how they were estimated."""
-    from siggen.engines.processes import default_workers
     from siggen.errors import counted
+    from siggen.workers.choice import default_workers
 
     workers = default_workers()
     here = f"about {_duration(found['cpu_hours'])} of this processor, {_duration(found['cpu_hours'] / workers)} with "

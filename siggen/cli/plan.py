@@ -152,7 +152,6 @@ def plan_summary(design: SetDesign) -> dict[str, Any]:
     from siggen.gearbox.plan import (
         SPLITS,
         estimated_bytes,
-        rows_per_group,
         shard_count,
         specimen_count,
         specimens_per_shard,
@@ -184,7 +183,6 @@ def plan_summary(design: SetDesign) -> dict[str, Any]:
         "life": lives,
         "shards_of_split": {split: shard_count(design, split) for split in SPLITS},
         "specimens_per_full_shard": specimens_per_shard(design),
-        "rows_per_group": rows_per_group(design),
         "raw_bytes": raw_bytes,
         "estimated_bytes_on_disk": estimated_bytes(design, records),
         **notes,

@@ -59,9 +59,9 @@ def verify(
         again = f"{counted(len(found.records), 'record')} simulated again, compared "
         again = again if found.records else "records simulated again: "
         echo(("" if found.comparison.startswith(HASHES_ALONE) else again) + found.comparison)
-        for maker in found.made_by:
-            same = "as this one" if maker == found.here else f"this is {found.here}"
-            echo(f"made by {maker}; {same}")
+        if found.made_by:
+            same = "as this one" if found.made_by == found.here else f"this is {found.here}"
+            echo(f"made by {found.made_by}; {same}")
         for line in problem_lines(found):
             echo(line, err=True)
         echo("differs from its manifest" if found.mismatches else "as its manifest promises")

@@ -41,7 +41,7 @@ DAMAGE_COLUMNS = (
     ),
     Column("polygon_height_mm", list_of(pa.float64()), MILLIMETRE, "heights of the corners; else empty"),
 )
-"""Columns of `damage/<split>.parquet`: one row per part of a record's damage."""
+"""Columns of `damage.parquet`: one row per part of a record's damage."""
 EDGE_COLUMNS = (
     Column("edge_radius_mm", pa.float64(), MILLIMETRE, "radius of the damage's edges"),
     Column(
@@ -52,11 +52,11 @@ EDGE_COLUMNS = (
         "empty: depth_mm everywhere",
     ),
 )
-"""More columns of `damage/<split>.parquet` in sets whose damage has edges of its own."""
+"""More columns of `damage.parquet` in sets whose damage has edges of its own."""
 
 
 def damage_columns(gearbox: Specimen) -> tuple[Column, ...]:
-    """Return the columns of `damage/*.parquet` of a set."""
+    """Return the columns of `damage.parquet` of a set."""
     edges = EDGE_COLUMNS if has_drawn_edges(gearbox) else ()
     return in_role(Role.TARGET, *DAMAGE_COLUMNS, *edges, *kind_columns(gearbox))
 

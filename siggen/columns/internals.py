@@ -9,7 +9,6 @@ import pyarrow as pa
 
 from siggen.columns.record import ID_COLUMNS, SetColumns, SimulatedRecord, record_value, schema_metadata, signal_array
 from siggen.errors import DatasetError
-from siggen.gearbox.plan import GROUP_BYTES, GROUP_CHANNEL_BYTES
 from siggen.keys.column import Column, list_of
 from siggen.mesh.contact_names import PAIR_PREFIX, is_of_contact_alone
 
@@ -18,13 +17,6 @@ def internals_schema(columns: SetColumns) -> pa.Schema:
     """Return the schema of `internals/*.parquet`: the ids of the records, then one series per quantity."""
     series = [_field(columns, column) for column in columns.quantities]
     return pa.schema([*(column.field() for column in ID_COLUMNS), *series], metadata=schema_metadata(columns))
-
-
-def internals_group_rows(columns: SetColumns) -> int:
-    """Return the number of records in a row group, a power of two, so that a group stays below 64 MB."""
-    row_bytes = columns.sampling.samples * 4
-    rows = min(GROUP_CHANNEL_BYTES // row_bytes, GROUP_BYTES // (row_bytes * max(1, len(columns.quantities))))
-    return 1 << (max(1, rows).bit_length() - 1)
 
 
 def internals_batch(columns: SetColumns, records: Sequence[SimulatedRecord]) -> pa.RecordBatch:

@@ -104,6 +104,6 @@ LIFE_TABLES: dict[str, tuple[Column, ...]] = {
     "debris": DEBRIS_COLUMNS,
     "pictures": PICTURE_COLUMNS,
 }
-"""Tables of `life/<table>/<split>.parquet`."""
+"""Tables of `life/<table>.parquet`."""
 NULLABLE = {"rul_rated_h", "rul_h"}
 """Columns that are null where a gearbox was suspended: nobody knows them."""

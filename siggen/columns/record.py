@@ -163,13 +163,13 @@ def record_schema(columns: SetColumns) -> pa.Schema:
 
 
 def label_schema(columns: SetColumns) -> pa.Schema:
-    """Return the schema of `metadata/*.parquet`: the columns before the signals."""
+    """Return the schema of `labels.parquet`: the columns before the signals."""
     labels = [column.field() for column in (*ID_COLUMNS, *columns.labels)]
     return pa.schema(labels, metadata=schema_metadata(columns))
 
 
 def damage_schema(columns: SetColumns) -> pa.Schema:
-    """Return the schema of `damage/*.parquet`."""
+    """Return the schema of `damage.parquet`."""
     return pa.schema([column.field() for column in columns.damage], metadata=schema_metadata(columns))
 
 

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import pyarrow as pa
 import yaml
 
 from siggen.columns.internals import internals_schema
-from siggen.columns.record import ChannelColumn, SetColumns, damage_schema, record_schema
+from siggen.columns.record import ChannelColumn, RecordFailure, SetColumns, damage_schema, record_schema
 from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
-from siggen.dataset.manifest import SPLITS
-from siggen.dataset.sidecar import Sidecar
+from siggen.dataset.inventory import ListedSplit
+from siggen.dataset.object_name import DAMAGE, LABELS
 from siggen.errors import counted
 from siggen.gearbox.description import faults, faults_text, machine_word, making, tolerances_text
 from siggen.gearbox.design import SetDesign
@@ -28,22 +28,30 @@ SIZE_LIMITS = ((1_000, "n<1K"), (10_000, "1K<n<10K"), (100_000, "10K<n<100K"), (
 LARGEST_SIZE = "1M<n<10M"
 
 
-def card(design: SetDesign, sidecars: Sequence[Sidecar], columns: SetColumns) -> str:
+Splits = Mapping[str, ListedSplit]
+
+
+def card(
+    design: SetDesign,
+    splits: Splits,
+    failures: Sequence[RecordFailure],
+    environment: Mapping[str, str],
+    columns: SetColumns,
+) -> str:
     """Return the card as Markdown with YAML front matter that Hugging Face reads; the same set gives the same bytes."""
-    splits = [split for split in SPLITS if any(sidecar.split == split for sidecar in sidecars)]
-    rows = sum(sidecar.data.rows for sidecar in sidecars)
+    rows = sum(split.rows for split in splits.values())
     sections = (
-        _front_matter(design, splits, rows, with_internals=bool(columns.quantities)),
+        _front_matter(design, tuple(splits), rows, with_internals=bool(columns.quantities)),
         _summary(design, columns.channels, rows),
-        _contents(design, sidecars, splits),
+        _contents(design, splits),
         making(design),
         _limits(design),
-        _failures(sidecars),
+        _failures(failures),
         _columns("Columns of `data/`", record_schema(columns)),
-        _columns("Columns of `damage/`", damage_schema(columns)),
+        _columns("Columns of `damage.parquet`", damage_schema(columns)),
         _internals(columns),
-        _loading(design, columns.channels[0].column, splits),
-        _identity(design, sidecars),
+        _loading(design, columns.channels[0].column, next(iter(splits))),
+        _identity(design, environment),
     )
     return "\n".join(section for section in sections if section)
 
@@ -75,8 +83,8 @@ def _front_matter(design: SetDesign, splits: Sequence[str], rows: int, *, with_i
         "size_categories": [next((size for limit, size in SIZE_LIMITS if rows < limit), LARGEST_SIZE)],
         "configs": [
             _view("signals", {split: f"data/{split}-*.parquet" for split in splits}, default=True),
-            _view("labels", {split: f"metadata/{split}.parquet" for split in splits}),
-            _view("damage", {split: f"damage/{split}.parquet" for split in splits}),
+            _view("labels", {"records": LABELS}),
+            _view("damage", {"records": DAMAGE}),
             *(internals if with_internals else []),
         ],
     }
@@ -98,18 +106,14 @@ none is a copy or a cut of another one. **The data are synthetic**: they were co
 """
 
 
-def _contents(design: SetDesign, sidecars: Sequence[Sidecar], splits: Sequence[str]) -> str:
+def _contents(design: SetDesign, splits: Splits) -> str:
     names = ["inspections"] if design.lives else list(design.state_names)
     lines = ["## Contents", "", f"| split | specimens | records | {' | '.join(names)} | MB |"]
     lines.append("|---" * (len(names) + 4) + "|")
-    for split in splits:
-        own = [sidecar for sidecar in sidecars if sidecar.split == split]
-        specimens = sum(last - first + 1 for sidecar in own for first, last in sidecar.specimens)
-        rows_of = [sum(sidecar.rows_per_state[name] for sidecar in own) for name in design.state_names]
+    for name, split in splits.items():
+        rows_of = [split.states[state] for state in design.state_names]
         states = [str(count) for count in (rows_of if not design.lives else [_inspections(design, rows_of)])]
-        rows = sum(sidecar.data.rows for sidecar in own)
-        size_mb = sum(sidecar.data.bytes for sidecar in own) / 1e6
-        lines.append(f"| {split} | {specimens} | {rows} | {' | '.join(states)} | {size_mb:.1f} |")
+        lines.append(f"| {name} | {split.specimens} | {split.rows} | {' | '.join(states)} | {split.bytes / 1e6:.1f} |")
     return "\n".join(
         [
             *lines,
@@ -135,8 +139,7 @@ def _limits(design: SetDesign) -> str:
 """
 
 
-def _failures(sidecars: Sequence[Sidecar]) -> str:
-    failures = [failure for sidecar in sidecars for failure in sidecar.failures]
+def _failures(failures: Sequence[RecordFailure]) -> str:
     if not failures:
         return ""
     listed = [f"| {failure.record_id} | {failure.status} | {failure.reason} |" for failure in failures[:50]]
@@ -172,8 +175,7 @@ def _type_name(kind: pa.DataType) -> str:
     return f"list of {kind.value_type}" if isinstance(kind, pa.ListType) else str(kind)
 
 
-def _loading(design: SetDesign, column: str, splits: Sequence[str]) -> str:
-    split = splits[0]
+def _loading(design: SetDesign, column: str, split: str) -> str:
     return f"""## Loading
 
 ```python
@@ -189,31 +191,35 @@ frame = pd.read_parquet("data/{split}-00000.parquet", columns=["record_id", "sta
 signals = np.stack(frame["{column}"])                   # (rows, samples)
 
 import polars as pl
-labels = pl.read_parquet("metadata/{split}.parquet")
+labels = pl.read_parquet("labels.parquet").filter(pl.col("split") == "{split}")
 frame = pl.scan_parquet("data/{split}-*.parquet").filter(pl.col("state") == "{design.state_names[-1]}").collect()
 
 import pyarrow.dataset as ds
 for batch in ds.dataset("data", format="parquet").to_batches(columns=["{column}"], batch_size=32):
     signals = batch["{column}"].flatten().to_numpy().reshape(len(batch), -1)
 
+import duckdb
+duckdb.sql("SELECT state, count(*) FROM 'data/{split}-*.parquet' GROUP BY state")
+
 import siggen
 dataset = siggen.open(".")
+values, states, gearboxes = dataset["{split}"].arrays(dataset.channels[0].name)   # for a fit
 record = dataset.record(0)                              # labels and signals of one record
 ```
 
-Signals are `FixedSizeList<float32>`: every reader above keeps or restores their length. Rows of `data/` and
-`metadata/` are in the same order and share `record_id`.
+Signals are `FixedSizeList<float32>`: every reader above keeps or restores their length. Rows of `data/` and of
+`labels.parquet` are in the same order and share `record_id`; splits follow each other.
 """
 
 
-def _identity(design: SetDesign, sidecars: Sequence[Sidecar]) -> str:
-    made_with = sorted({f"siggen {s.environment['siggen']}, numpy {s.environment['numpy']}" for s in sidecars})
+def _identity(design: SetDesign, environment: Mapping[str, str]) -> str:
+    made_with = f"siggen {environment['siggen']}, numpy {environment['numpy']}"
     specimens = counted(design.specimens, "specimen")
     return f"""## Identity
 
 * Configuration: `config.yaml`; identity (SHA-256 of the configuration without the number of specimens):
   `{design.identity}`
-* Seed {design.seed}, {specimens}; made with {"; ".join(made_with)}.
+* Seed {design.seed}, {specimens}; made with {made_with}.
 * Schema version {SCHEMA_VERSION}, simulation version {SIMULATION_VERSION}.
 * Every random number follows from seed, stage and owner, so `siggen generate config.yaml --out NEW` makes the same set
   again: bit for bit on the same CPU family and versions (`manifest.json`), elsewhere within a step of the converter.

@@ -26,7 +26,7 @@ MAKES_RECORDS = (
     *("noise/**/*.py", "sensors/**/*.py", "life/**/*.py", "config/**/*.py", "rig/**/*.py"),
     *("gears/**/*.py", "drivetrain/**/*.py", "damage/**/*.py", "mesh/**/*.py", "motion/**/*.py", "sensing/**/*.py"),
     *("gearbox/**/*.py", "columns/**/*.py", "record/**/*.py"),
-    "dataset/chunk.py",
+    "dataset/simulated_rows.py",
 )
 """Sources that can change a record of a configuration. What checks a configuration, writes files, distributes tasks or
 draws pictures is none of them."""
@@ -64,12 +64,6 @@ def version_text(made_in: Mapping[str, str]) -> str:
     own = fingerprint(made_in)
     siggen = made_in.get("siggen", "of unknown version")[:40]
     return f"siggen {siggen} ({f'fingerprint {own[:CHARACTERS]}' if own else 'without fingerprint'})"
-
-
-def host_facts() -> dict[str, object]:
-    """Return what the run's speed depends on; never part of the files that must be identical."""
-    pages = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 0
-    return {"cpu": _cpu(), "cpu_count": os.cpu_count() or 0, "memory_bytes": pages, "platform": platform.platform()}
 
 
 def peak_memory_bytes() -> dict[str, int]:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import yaml
 
+from siggen.dataset.environment import environment, fingerprint, version_text
 from siggen.dataset.gate import manifest_facts
+from siggen.dataset.inventory import Inventory
 from siggen.dataset.manifest import CONFIG, MANIFEST
-from siggen.dataset.object_name import CHECKSUMS
-from siggen.dataset.shard_index import promised_files
+from siggen.dataset.object_name import DATA_FOLDER, SPLITS
+from siggen.dataset.shard import about_of, unpacked
 from siggen.dataset.storage import Storage
 from siggen.errors import ConfigError, DatasetError, VerificationError
 from siggen.gearbox.design import SetDesign, design_of
@@ -18,36 +21,102 @@ from siggen.gearbox.design import SetDesign, design_of
 NAMED_DIFFERENCES = 5
 
 
-def is_finished(storage: Storage, design: SetDesign) -> bool:
-    """Tell whether a folder holds the whole set already; False if it is empty or holds a part of this set.
+@dataclass(frozen=True, slots=True)
+class FolderContent:
+    """What a folder holds of a set.
+
+    Attributes
+    ----------
+    earlier
+        Numbers of gearboxes at which the set was finished before: its shards never reach over one.
+    finished
+        The manifest of the whole set, with every file that it names.
+    """
+
+    earlier: tuple[int, ...] = ()
+    finished: Inventory | None = None
+
+
+def content_of(storage: Storage, design: SetDesign) -> FolderContent:
+    """Return what a folder holds already of a set: nothing, a part of it, or all.
 
     Only sizes are compared: `siggen verify` reads every byte.
 
     Raises
     ------
     DatasetError
-        If the folder holds another set, a finished one of another schema version, or files that are not a set.
-        Nothing is ever deleted to make room.
+        If the folder holds another set, a finished one of another version, one with more gearboxes, or files that are
+        not a set. Nothing is ever deleted to make room.
     """
     if not storage.exists(CONFIG):
         _refuse_strangers(storage)
-        return False
-    _refuse_other_set(storage, design)
-    return storage.exists(MANIFEST) and _has_every_file(storage)
+        return FolderContent()
+    there = _refuse_other_set(storage, design)
+    manifest = _manifest(storage)
+    if manifest is None or manifest.identity != design.identity:
+        if there != design.specimens:
+            raise _other_count(storage, there, design.specimens, "begun and not finished")
+        return FolderContent(_earlier_of_shards(storage, design))
+    if manifest.specimens > design.specimens:
+        raise _other_count(storage, manifest.specimens, design.specimens, "finished")
+    if manifest.specimens == design.specimens and _has_every_file(storage, manifest):
+        return FolderContent(manifest.extensions[:-1], manifest)
+    here = environment()
+    if fingerprint(manifest.environment) != fingerprint(here):
+        raise DatasetError(
+            f"{storage.location} was made by {version_text(manifest.environment)}, this is {version_text(here)}: "
+            "shards of two versions are never mixed. Go on with the version and the kind of processor that made it, or "
+            f"make a new set: siggen generate {storage.location}/{CONFIG} --set specimens={design.specimens} --out NEW"
+        )
+    return FolderContent(tuple(count for count in manifest.extensions if count < design.specimens))
 
 
-def _has_every_file(storage: Storage) -> bool:
-    sizes = storage.sizes()
+def _manifest(storage: Storage) -> Inventory | None:
+    """Return the manifest; None where there is none, or it was changed.
+
+    Raises
+    ------
+    DatasetError
+        If a version of siggen with other files wrote it.
+    """
+    if not storage.exists(MANIFEST):
+        return None
     try:
-        facts = manifest_facts(MANIFEST, storage.get(MANIFEST))
+        return manifest_facts(MANIFEST, storage.get(MANIFEST))
     except VerificationError:
-        return False
-    if any(sizes.get(name) != file.bytes for name, file in facts.files.items()):
-        return False
-    try:
-        return all(sizes.get(name) == file.bytes for name, file in promised_files(storage, facts.files[CHECKSUMS]))
-    except DatasetError:
-        return False
+        return None
+    except DatasetError as error:
+        raise DatasetError(f"{storage.location}/{error}") from error
+
+
+def _has_every_file(storage: Storage, manifest: Inventory) -> bool:
+    sizes = storage.sizes()
+    return all(sizes.get(name) == file.bytes for name, file in manifest.files.items())
+
+
+def _earlier_of_shards(storage: Storage, design: SetDesign) -> tuple[int, ...]:
+    """Return at which numbers a set without its manifest was finished: its latest shards say so."""
+    found: tuple[int, ...] = ()
+    names = storage.names(DATA_FOLDER)
+    for split in SPLITS:
+        last = max((name for name in names if name.startswith(f"{DATA_FOLDER}/{split}-")), default=None)
+        if last is None:
+            continue
+        try:
+            about = about_of(unpacked(storage.get(last), ["record_id"]))
+            counts = tuple(int(count) for count in about["earlier"])
+        except (VerificationError, DatasetError, KeyError, TypeError, ValueError):
+            continue
+        if about.get("identity") == design.identity and all(0 < count < design.specimens for count in counts):
+            found = max(found, tuple(sorted(set(counts))), key=len)
+    return found
+
+
+def _other_count(storage: Storage, there: int, now: int, state: str) -> DatasetError:
+    return DatasetError(
+        f"{storage.location} holds this set with {there} gearboxes, {state}; asked for are {now}: a finished set grows "
+        f"to more; fewer need a new folder (its first {min(there, now)} gearboxes will be the same)"
+    )
 
 
 def _refuse_strangers(storage: Storage) -> None:
@@ -60,24 +129,18 @@ def _refuse_strangers(storage: Storage) -> None:
         )
 
 
-def _refuse_other_set(storage: Storage, design: SetDesign) -> None:
+def _refuse_other_set(storage: Storage, design: SetDesign) -> int:
+    """Return for how many gearboxes the configuration asks that a folder holds."""
     stored = storage.get(CONFIG)
     if stored == design.text.encode():
-        return
+        return design.specimens
     try:
         found = yaml.safe_load(stored)
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise DatasetError(f"{storage.location}/{CONFIG} cannot be read ({error}); name a new folder") from error
-    if _is_same_set(found, design):
-        return
+    if (specimens := _of_same_set(found, design)) is not None:
+        return specimens
     differences = list(_differences("", found, design.canonical()))
-    if [path for path, _, _ in differences] == ["specimens"]:
-        before, now = differences[0][1:]
-        raise DatasetError(
-            f"{storage.location} holds this set with {before} specimens, asked for are {now}; "
-            f"`siggen extend {storage.location} --specimens {now}` adds to a finished set; fewer need a new folder "
-            f"(its first {min(before, now)} specimens will be the same)"
-        )
     listed = [f"  {path}: {before} there, {now} asked for" for path, before, now in differences[:NAMED_DIFFERENCES]]
     more = len(differences) - NAMED_DIFFERENCES
     listed += [f"  and {more} more"] if more > 0 else []
@@ -85,13 +148,13 @@ def _refuse_other_set(storage: Storage, design: SetDesign) -> None:
     raise DatasetError("\n".join([f"{storage.location} holds another data set; name a new folder", *listed]))
 
 
-def _is_same_set(found: Any, design: SetDesign) -> bool:
-    """Tell whether a stored configuration describes this set in another form."""
+def _of_same_set(found: Any, design: SetDesign) -> int | None:
+    """Return the gearboxes of a stored configuration, which may have another form; None for another set."""
     try:
         stored = design_of(found if isinstance(found, Mapping) else {}, CONFIG)
     except ConfigError:
-        return False
-    return (stored.identity, stored.specimens) == (design.identity, design.specimens)
+        return None
+    return stored.specimens if stored.identity == design.identity else None
 
 
 def _differences(path: str, before: Any, now: Any) -> list[tuple[str, Any, Any]]:

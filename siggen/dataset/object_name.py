@@ -10,13 +10,15 @@ import re
 from siggen.errors import DatasetError
 
 MOST_CHARACTERS = 500
-INDEX, CHECKSUMS = "index.parquet", "checksums.parquet"
-"""One row per shard each (`shard_index`)."""
+LABELS, DAMAGE = "labels.parquet", "damage.parquet"
+"""Every record without its signals, and every single damage, in the order of the shards."""
 
-DATA_FOLDER, INTERNALS_FOLDER, SIDECAR_FOLDER = "data", "internals", "shards"
+DATA_FOLDER, INTERNALS_FOLDER, LIFE_FOLDER = "data", "internals", "life"
+SPLITS = ("train", "validation", "test")
 
-PART = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+=@-]{0,219}")
+PART = r"[A-Za-z0-9_](?:[A-Za-z0-9_.+=@-]{0,218}[A-Za-z0-9_+=@-])?"
 """Between two slashes. A point at the beginning would hide a file, or lead upwards."""
+NAME = re.compile(f"{PART}(?:/{PART})*")
 ALLOWED = "allowed: names below the set's folder such as data/train-00000.parquet"
 
 
@@ -28,8 +30,7 @@ def object_name(text: str) -> str:
     ValueError
         If it could lead out of the set's folder, or is not written as siggen writes names.
     """
-    parts = text.split("/")
-    if len(text) > MOST_CHARACTERS or not all(PART.fullmatch(part) and not part.endswith(".") for part in parts):
+    if len(text) > MOST_CHARACTERS or not NAME.fullmatch(text):
         raise ValueError(ALLOWED)
     return text
 
@@ -56,6 +57,6 @@ def internals_name(shard: str) -> str:
     return f"{INTERNALS_FOLDER}/{shard}.parquet"
 
 
-def sidecar_name(shard: str) -> str:
-    """Return the object name of a shard's sidecar."""
-    return f"{SIDECAR_FOLDER}/{shard}.json"
+def life_name(table: str) -> str:
+    """Return the object name of a table of lives."""
+    return f"{LIFE_FOLDER}/{table}.parquet"

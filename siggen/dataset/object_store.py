@@ -1,55 +1,42 @@
-"""A set in an object store that speaks S3: one PUT per object, which is there as a whole or not at all."""
+"""A set in an object store that speaks S3, through pyarrow: whole objects, each there as a whole or not at all."""
 
 from __future__ import annotations
 
-import hashlib
 import os
-import secrets
-import tempfile
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
-from typing import Any, BinaryIO, cast
+from functools import cache
+from typing import Any
 
-from siggen.dataset.object_file import ObjectFile
 from siggen.dataset.object_path import ObjectPath
-from siggen.dataset.s3_client import error_code, in_words, s3_client
-from siggen.dataset.writer_lock import ABSENT, WriterLock
-from siggen.errors import DatasetError
+from siggen.errors import DatasetError, UsageError
 from siggen.file_writing import LEFTOVER_SUFFIX
 
-LOCK = f".writer{LEFTOVER_SUFFIX}"
-LARGEST_PUT_BYTES = 5 * 1024**3
-"""S3 takes no more in one PUT; shards are 50 times smaller."""
-
-PAGE_OBJECTS = 1000
-"""Of one answer to a listing, the most that S3 gives."""
-
-BODY_ATTEMPTS = 4
-"""An answer that breaks off in the middle is asked for again; botocore repeats only what fails before."""
+ATTEMPTS = 6
+CONNECT_S, REQUEST_S = 10.0, 60.0
+HINTS = {
+    "NO_SUCH_BUCKET": "there is no such bucket; make it first, siggen makes none",
+    "ACCESS_DENIED": "these credentials may not",
+    "INVALID_ACCESS_KEY_ID": "AWS_ACCESS_KEY_ID is not one of this server",
+    "SIGNATURE_DOES_NOT_MATCH": "AWS_SECRET_ACCESS_KEY does not belong to AWS_ACCESS_KEY_ID",
+    "EXPIRED_TOKEN": "the credentials have expired",
+    "curlCode: 7": "nobody answers at its address; see AWS_ENDPOINT_URL",
+}
+"""What the words of an error say -> what to do."""
 
 
 class ObjectStore:
     """The objects below s3://bucket/key.
 
+    There is no lock: two writers of one set write the same bytes, and an upload is whole or absent.
+
     Parameters
     ----------
     path : ObjectPath
-
-    Raises
-    ------
-    UsageError
-        If boto3 is not installed.
     """
 
     def __init__(self, path: ObjectPath) -> None:
         self.path = path
-        self._of_process: tuple[int, Any] = (os.getpid(), s3_client())
-        self._lock: WriterLock | None = None
-
-    def __reduce__(self) -> tuple[type[ObjectStore], tuple[ObjectPath]]:
-        return ObjectStore, (self.path,)
 
     @property
     def location(self) -> str:
@@ -57,168 +44,101 @@ class ObjectStore:
         return str(self.path)
 
     def put(self, name: str, content: bytes) -> None:
-        """Store an object in one request."""
-        with self._writing(name):
-            self._client.put_object(**self._place(name), Body=content)
+        """Store an object."""
+        with self._in_words(name, "written"), _file_system().open_output_stream(self._place(name)) as stream:
+            stream.write(content)
 
-    @contextmanager
-    def draft(self, name: str) -> Iterator[Path]:
-        """Yield a path in the folder for temporary files (TMPDIR); it is sent in one request when the block ends."""
-        part = Path(tempfile.gettempdir()) / f"{self._stem}{secrets.token_hex(8)}{LEFTOVER_SUFFIX}"
-        try:
-            yield part
-            if part.stat().st_size > LARGEST_PUT_BYTES:
-                raise DatasetError(f"{self.path / name} would have {part.stat().st_size} bytes; S3 takes 5 GiB at once")
-            with self._writing(name), part.open("rb") as file:
-                self._client.put_object(**self._place(name), Body=file)
-        finally:
-            part.unlink(missing_ok=True)
-
-    def get(self, name: str) -> bytes:
+    def get(self, name: str, size: int | None = None) -> bytes:
         """Return the whole object.
 
         Raises
         ------
         DatasetError
-            If it is missing or cannot be reached.
+            If it is missing, has another size than the promised one, or cannot be reached.
         """
-        return self._fetch(name, None)
-
-    def open(self, name: str, size: int | None = None) -> BinaryIO:
-        """Open the object for reading; pieces are fetched as they are asked for, its size only if it is not promised.
-
-        Raises
-        ------
-        DatasetError
-            If it is missing or cannot be reached.
-        """
-        size = self.size(name) if size is None else size
-        return cast("BinaryIO", ObjectFile(size, lambda first, end: self._fetch(name, (first, end))))
-
-    def size(self, name: str) -> int:
-        """Return the object's size in bytes."""
-        size = self._size(name)
-        if size is None:
-            raise self._missing(name)
-        return size
+        with self._in_words(name, "read"):
+            try:
+                with _file_system().open_input_file(self._place(name)) as file:
+                    if size not in (None, found := file.size()):
+                        raise DatasetError(f"{self.path / name} has {found} bytes instead of {size}")
+                    return bytes(file.read())
+            except FileNotFoundError as error:
+                raise DatasetError(
+                    f"{self.path / name} is missing; generating the same set again restores it"
+                ) from error
 
     def exists(self, name: str) -> bool:
         """Tell whether the object is there."""
-        return self._size(name) is not None
+        with self._in_words(name, "read"):
+            return bool(_file_system().get_file_info(self._place(name)).is_file)
 
     def sizes(self, folder: str = "") -> dict[str, int]:
-        """Return name -> bytes of all objects below a folder, without leftovers; one request per 1000 objects."""
-        root = f"{self.path.key}/"
-        below = root + (f"{folder}/" if folder else "")
-        with in_words(self.location, "listed"):
-            pages = self._client.get_paginator("list_objects_v2").paginate(
-                Bucket=self.path.bucket, Prefix=below, PaginationConfig={"PageSize": PAGE_OBJECTS}
-            )
-            listed = [one for page in pages for one in page.get("Contents", ())]
-        found = {one["Key"].removeprefix(root): int(one["Size"]) for one in listed}
-        # consoles make empty objects that end in a slash and stand for folders
-        return {name: found[name] for name in sorted(found) if not name.endswith((LEFTOVER_SUFFIX, "/"))}
+        """Return name -> bytes of all objects below a folder, by name, without leftovers."""
+        from pyarrow.fs import FileSelector
+
+        root = self._place("")
+        selector = FileSelector(f"{root}{folder}".rstrip("/"), recursive=True, allow_not_found=True)
+        with self._in_words(folder, "listed"):
+            listed = [one for one in _file_system().get_file_info(selector) if one.is_file]
+        found = {one.path.removeprefix(root): int(one.size) for one in listed}
+        return {name: found[name] for name in sorted(found) if not name.endswith(LEFTOVER_SUFFIX)}
 
     def names(self, folder: str = "") -> list[str]:
         """Return the sorted names of all objects below a folder, without leftovers."""
         return list(self.sizes(folder))
 
-    def delete(self, name: str) -> None:
-        """Delete the object, if it is there."""
-        with self._writing(name):
-            self._client.delete_object(**self._place(name))
-
-    def delete_below(self, folder: str) -> None:
-        """Delete all objects below a folder; one request per 1000 of them."""
-        names = self.names(folder)
-        for start in range(0, len(names), PAGE_OBJECTS):
-            keys = [{"Key": self._place(name)["Key"]} for name in names[start : start + PAGE_OBJECTS]]
-            with self._writing(folder):
-                self._client.delete_objects(Bucket=self.path.bucket, Delete={"Objects": keys, "Quiet": True})
-
-    def delete_leftovers(self) -> list[str]:
-        """Delete what a killed process of this machine left of this set among the temporary files.
-
-        The store itself has no leftovers: an upload that breaks off leaves nothing there.
-        """
-        parts = sorted(Path(tempfile.gettempdir()).glob(f"{self._stem}*{LEFTOVER_SUFFIX}"))
-        for part in parts:
-            part.unlink(missing_ok=True)
-        return [part.name for part in parts]
+    def delete_leftovers(self, *, of_dead: bool = False) -> list[str]:  # noqa: ARG002 - as of every storage
+        """Return nothing: an upload that breaks off leaves nothing."""
+        return []
 
     @contextmanager
-    def writing(self) -> Iterator[None]:
-        """Hold the set for one writer; see `writer_lock`.
+    def writing(self, *, beside_others: bool = False) -> Iterator[None]:  # noqa: ARG002 - as of every storage
+        """Let everybody write."""
+        yield
+
+    def _place(self, name: str) -> str:
+        return f"{self.path.bucket}/{self.path.key}/{name}"
+
+    @contextmanager
+    def _in_words(self, name: str, done: str) -> Iterator[None]:
+        """Turn errors of the connection and of the server into words.
 
         Raises
         ------
         DatasetError
-            If another process is writing it, or the store cannot be reached.
+            Naming the object, what was to be done with it, and why it could not be.
         """
-        lock = WriterLock(self._client, self._place(LOCK), self.location)
-        lock.acquire()
-        self._lock = lock
         try:
             yield
-        finally:
-            self._lock = None
-            lock.release()
+        except OSError as error:
+            said = " ".join(str(error).split())
+            why = next((hint for words, hint in HINTS.items() if words in said), said)
+            raise DatasetError(
+                f"{self.path / name} cannot be {done}: {why}; finished shards stay, and the same command continues "
+                "once that is mended"
+            ) from error
 
-    def check_writing(self) -> None:
-        """Raise DatasetError if another writer took the lock over; this one was silent for too long."""
-        if self._lock is not None:
-            self._lock.check()
 
-    @property
-    def _client(self) -> Any:
-        """The client of this process: connections must not be shared with a forked one."""
-        if self._of_process[0] != os.getpid():
-            self._of_process = (os.getpid(), s3_client())
-        return self._of_process[1]
+def _file_system() -> Any:
+    """Return the file system of this process by what its environment says: AWS_* and ~/.aws."""
+    return _made(os.getpid(), tuple(sorted(item for item in os.environ.items() if item[0].startswith("AWS_"))))
 
-    @property
-    def _stem(self) -> str:
-        """What temporary files of this set begin with, whoever writes them."""
-        return f"siggen-{hashlib.sha256(self.location.encode()).hexdigest()[:16]}-"
 
-    def _place(self, name: str) -> dict[str, str]:
-        return {"Bucket": self.path.bucket, "Key": f"{self.path.key}/{name}"}
+@cache
+def _made(process: int, variables: tuple[tuple[str, str], ...]) -> Any:  # noqa: ARG001 - they tell file systems apart
+    try:
+        from pyarrow.fs import AwsStandardS3RetryStrategy, S3FileSystem
+    except ImportError as error:
+        raise UsageError("s3:// needs a build of pyarrow with S3, such as that of the package index") from error
 
-    @contextmanager
-    def _writing(self, name: str) -> Iterator[None]:
-        self.check_writing()
-        with in_words(str(self.path / name), "written"):
-            yield
-
-    def _size(self, name: str) -> int | None:
-        from botocore.exceptions import ClientError
-
-        with in_words(str(self.path / name), "read"):
-            try:
-                return int(self._client.head_object(**self._place(name))["ContentLength"])
-            except ClientError as error:
-                if error_code(error) in ABSENT:
-                    return None
-                raise
-
-    def _fetch(self, name: str, borders: tuple[int, int] | None) -> bytes:
-        """Return an object, or its bytes from a place to before another, asked for again if an answer breaks off."""
-        from botocore.exceptions import ClientError, HTTPClientError, IncompleteReadError
-
-        asked = {} if borders is None else {"Range": f"bytes={borders[0]}-{borders[1] - 1}"}
-        with in_words(str(self.path / name), "read"):
-            for attempt in range(BODY_ATTEMPTS):
-                try:
-                    return bytes(self._client.get_object(**self._place(name), **asked)["Body"].read())
-                except ClientError as error:
-                    if error_code(error) in ABSENT:
-                        raise self._missing(name) from error
-                    raise
-                except (HTTPClientError, IncompleteReadError):
-                    if attempt == BODY_ATTEMPTS - 1:
-                        raise
-                    time.sleep(0.5 * 2**attempt)
-        raise AssertionError("unreachable")
-
-    def _missing(self, name: str) -> DatasetError:
-        return DatasetError(f"{self.path / name} is missing; generating the same set again restores it")
+    own = dict(variables)
+    attempts = int(own.get("AWS_MAX_ATTEMPTS", ATTEMPTS))
+    region = own.get("AWS_REGION") or own.get("AWS_DEFAULT_REGION")
+    return S3FileSystem(
+        endpoint_override=own.get("AWS_ENDPOINT_URL"),
+        connect_timeout=CONNECT_S,
+        request_timeout=REQUEST_S,
+        retry_strategy=AwsStandardS3RetryStrategy(max_attempts=attempts),
+        background_writes=False,
+        **({"region": region} if region else {}),
+    )

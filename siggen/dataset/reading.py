@@ -1,9 +1,10 @@
-"""Reading a finished set without physics: labels, damage, and signals group by group."""
+"""Reading a finished set without physics: labels, damage, and signals shard by shard."""
 
 from __future__ import annotations
 
+import hashlib
 from collections import OrderedDict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePath
@@ -17,13 +18,13 @@ import yaml
 from siggen.columns.drivetrain import GearTrain
 from siggen.columns.record import TACHO_COLUMN, ChannelColumn, signal_channels, signal_matrix
 from siggen.dataset.inventory import Inventory, ListedColumn, ListedShard, PromisedFile
-from siggen.dataset.manifest import CARD, CONFIG, DAMAGE_FOLDER, LIFE_FOLDER, METADATA_FOLDER, SPLITS, read_manifest
-from siggen.dataset.object_name import CHECKSUMS
-from siggen.dataset.promises import Promises
-from siggen.dataset.shard_index import ShardIndex, promised_files
-from siggen.dataset.storage import Storage
+from siggen.dataset.manifest import CARD, CONFIG, read_manifest
+from siggen.dataset.object_name import DAMAGE, LABELS, LIFE_FOLDER, SPLITS, life_name
+from siggen.dataset.shard import ABOUT, columns_of, unpacked
+from siggen.dataset.storage import HOW_TO_GO_ON, Storage
 from siggen.dataset.storage_at import storage_at
-from siggen.errors import ConfigError, DatasetError, UsageError, counted
+from siggen.dataset.table_form import check_form, form_of
+from siggen.errors import ConfigError, DatasetError, UsageError, VerificationError, counted
 from siggen.keys.column import Column, Role
 
 if TYPE_CHECKING:
@@ -34,16 +35,7 @@ _Loader = yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
 
 
 KEPT_BYTES = 256 << 20
-"""Decoded row groups that a set keeps in memory, so that records of one row group are decoded once."""
-
-
-@dataclass(frozen=True, slots=True)
-class RowGroup:
-    """The smallest piece of a set that is decoded at once: number `number` of `file`, with `rows` records."""
-
-    file: str
-    number: int
-    rows: int
+"""Decoded tables that a set keeps in memory, so that records of one shard are decoded once."""
 
 
 class Dataset:
@@ -54,11 +46,9 @@ class Dataset:
     path : Path
         For a set in an object store a path that is none of this machine: s3://bucket/set.
     manifest : dict
-        Content of manifest.json: identity, counts, failures, environments, hashes.
+        Content of manifest.json: identity, counts, failures, environment, shards, hashes.
     inventory : Inventory
         The same as typed facts.
-    index : ShardIndex
-        The shards, one by one.
     config : dict
         Content of config.yaml.
     splits : tuple of str
@@ -73,8 +63,8 @@ class Dataset:
     Raises
     ------
     DatasetError
-        If there is no finished set, or manifest, index or configuration are not what is promised. Other files are
-        compared when they are read.
+        If there is no finished set, or manifest or configuration are not what is promised. Other files are compared,
+        whole, when they are read.
     """
 
     def __init__(self, storage: Storage) -> None:
@@ -82,10 +72,8 @@ class Dataset:
         self.path: PurePath = storage.path
         self.inventory: Inventory = read_manifest(storage)
         self.manifest: dict[str, Any] = self.inventory.content
-        self.index = ShardIndex(storage, self.inventory)
-        self._promises = Promises(storage, self.inventory, self.index)
         self._ids: dict[str, np.ndarray] = {}
-        self._groups: OrderedDict[tuple[str, int], pa.Table] = OrderedDict()
+        self._tables: OrderedDict[str, pa.Table] = OrderedDict()
         self.config: dict[str, Any] = self._read_config()
         self.splits: tuple[str, ...] = tuple(s for s in SPLITS if s in self.inventory.splits)
         self.channels: tuple[ChannelColumn, ...] = self.inventory.channels
@@ -102,8 +90,8 @@ class Dataset:
         return f"Dataset({str(self.path)!r}, {rows} records, {channels} at {self.fs_hz:g} Hz)"
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return what goes to another process: everything but the decoded row groups."""
-        return {**self.__dict__, "_groups": OrderedDict()}
+        """Return what goes to another process: everything but decoded tables."""
+        return {**self.__dict__, "_tables": OrderedDict()}
 
     def __len__(self) -> int:
         """Return the number of records of all splits."""
@@ -156,7 +144,8 @@ class Dataset:
         UsageError
             If the split or a column does not exist.
         """
-        return self._table(METADATA_FOLDER, split, columns)
+        first, rows = self._stretch(split)
+        return self._table(LABELS, columns).slice(first, rows)
 
     def record_ids(self, split: str) -> np.ndarray:
         """Return the ids of a split's records in their order, (n,) int64; read once."""
@@ -166,7 +155,10 @@ class Dataset:
 
     def damage(self, split: str | None = None) -> pa.Table:
         """Return one row per single damage of every record of a split, or of all splits."""
-        return self._table(DAMAGE_FOLDER, split, None)
+        table = self._table(DAMAGE)
+        if split is None:
+            return table
+        return table.filter(pc.is_in(table["record_id"], pa.array(self.record_ids(*self._splits(split)))))
 
     def life(self, table: str, split: str | None = None) -> pa.Table:
         """Return a table of a set that runs to failure: units, inspections, teeth, pits or outlook; as `labels`.
@@ -176,16 +168,18 @@ class Dataset:
         UsageError
             If the set holds no such table, or the split does not exist.
         """
-        known = sorted({name.split("/")[1] for name in self.inventory.files if name.startswith(f"{LIFE_FOLDER}/")})
+        begin, end = f"{LIFE_FOLDER}/", ".parquet"
+        known = sorted(name[len(begin) : -len(end)] for name in self.files if name.startswith(begin))
         if table not in known:
             allowed = ", ".join(known) or "none: the set's configuration has no section life"
             raise UsageError(f"{self.path}: received the table {table!r} of life/; allowed: {allowed}")
-        return self._table(f"{LIFE_FOLDER}/{table}", split, None)
+        found = self._table(life_name(table))
+        return found if split is None else found.filter(pc.equal(found["split"], *self._splits(split)))
 
     def records(
         self, split: str | None = None, columns: Sequence[str] | None = None, batch_rows: int | None = None
     ) -> Iterator[pa.RecordBatch]:
-        """Yield rows with signals, in the order of the labels, holding one row group at a time.
+        """Yield rows with signals, in the order of the labels, holding one shard at a time.
 
         Parameters
         ----------
@@ -194,46 +188,37 @@ class Dataset:
         columns : sequence of str, optional
             All columns when omitted. `signal_matrix` turns a signal column into (rows, samples).
         batch_rows : int, optional
-            Largest number of rows of a batch; a whole row group when omitted.
+            Largest number of rows of a batch; a whole shard when omitted.
 
         Raises
         ------
         UsageError
             If the split or a column does not exist.
         """
-        yield from self._batches((shard.file for shard in self._shards(split)), columns, batch_rows)
+        for shard in self.shards(split):
+            yield from self._shard_table(shard.file, shard.rows, columns).to_batches(max_chunksize=batch_rows)
 
-    def row_groups(self, split: str | None = None) -> tuple[RowGroup, ...]:
-        """Return the row groups of a split, or of all splits, in the order of the labels; `row_group` reads one.
+    def shards(self, split: str | None = None) -> tuple[ListedShard, ...]:
+        """Return the shards of a split, or of all splits, in the order of the labels; `shard_rows` reads one.
 
         Raises
         ------
         UsageError
             If the split does not exist.
         """
-        size = self.inventory.rows_per_group
-        files = (one for name in self._splits(split) for one in self.index.rows_of_files(name))
-        return tuple(
-            RowGroup(file, number, min(size, rows - number * size))
-            for file, rows in files
-            for number in range(-(-rows // size))
-        )
+        wanted = self._splits(split)
+        return tuple(shard for shard in self.inventory.shards if shard.split in wanted)
 
-    def row_group(self, group: RowGroup, columns: Sequence[str] | None = None) -> pa.RecordBatch:
-        """Return the rows of one row group with signals, by any process and in any order.
+    def shard_rows(self, shard: ListedShard, columns: Sequence[str] | None = None) -> pa.RecordBatch:
+        """Return the rows of one shard with signals, by any process and in any order.
 
         Raises
         ------
         UsageError
             If a column does not exist.
         """
-        with self._promises.table(group.file) as file:
-            self._check_columns(file.schema, columns)
-            footer = file.footer
-            if group.number >= footer.num_row_groups or footer.row_group(group.number).num_rows != group.rows:
-                raise DatasetError(f"{self.path}/{group.file}: row group {group.number} is not the one that is listed")
-            table = file.group(group.number, columns)
-        return table.combine_chunks().to_batches()[0]
+        rows = self._shard_table(shard.file, shard.rows, columns)
+        return (rows.to_batches() or [pa.RecordBatch.from_pylist([], schema=rows.schema)])[0]
 
     def internals(
         self, split: str | None = None, columns: Sequence[str] | None = None, batch_rows: int | None = None
@@ -246,7 +231,8 @@ class Dataset:
             If the set stores none, or the split or a column does not exist.
         """
         self._check_internals()
-        yield from self._batches((shard.internals or "" for shard in self._shards(split)), columns, batch_rows)
+        for shard in self.shards(split):
+            yield from self._shard_table(shard.internals, None, columns).to_batches(max_chunksize=batch_rows)
 
     def record_internals(self, record_id: int) -> dict[str, np.ndarray] | None:
         """Return name -> float32 (n,) of one record, or None if the set does not store those of this record.
@@ -257,9 +243,13 @@ class Dataset:
             If the set stores none at all.
         """
         self._check_internals()
-        shard = self.index.owner(record_id)
-        row = None if shard is None or shard.internals is None else self._row(shard.internals, record_id)
-        return None if row is None else as_internals(row)
+        place = self._places.get(record_id)
+        if place is None:
+            return None
+        shard, _ = self._owner(place)
+        table = self._table(shard.internals)
+        row = pc.index(table["record_id"], record_id).as_py()
+        return None if row < 0 else as_internals(table.slice(row, 1))
 
     def _check_internals(self) -> None:
         if not self.internal_columns:
@@ -267,16 +257,6 @@ class Dataset:
                 f"{self.path} stores no internal quantities; `internals` in its configuration would ask for them, "
                 "and `siggen simulate` computes those of one record"
             )
-
-    def _batches(
-        self, names: Iterable[str], columns: Sequence[str] | None, batch_rows: int | None
-    ) -> Iterator[pa.RecordBatch]:
-        """Yield the rows of all files, a row group at a time."""
-        for name in names:
-            with self._promises.table(name) as file:
-                self._check_columns(file.schema, columns)
-                for group in file.groups(columns):
-                    yield from group.combine_chunks().to_batches(max_chunksize=batch_rows)
 
     def record(self, record_id: int) -> dict[str, Any]:
         """Return one record: labels as Python values, channels as float32 (n,), `tacho_s` as float64 (k,).
@@ -288,48 +268,99 @@ class Dataset:
         UsageError
             If no row has this id; the message says whether the record failed or was never planned.
         """
-        shard = self.index.owner(record_id)
-        row = None if shard is None else self._row(shard.file, record_id)
-        if row is None:
+        place = self._places.get(record_id)
+        if place is None:
             raise UsageError(self._why_no_record(record_id))
-        return as_record(row)
+        shard, row = self._owner(place)
+        table = self._table(shard.file)
+        if table.num_rows != shard.rows or table["record_id"][row].as_py() != record_id:
+            raise self._broken(shard.file, "it holds other records than the labels say")
+        return as_record(table.slice(row, 1))
 
-    def _row(self, name: str, record_id: int) -> pa.Table | None:
-        """Return the row of a record in a file whose first column is `record_id`; None if there is none."""
-        footer = self._promises.footer(name)
-        for number in range(footer.num_row_groups):
-            statistics = footer.row_group(number).column(0).statistics
-            if statistics is None or not statistics.has_min_max or statistics.min <= record_id <= statistics.max:
-                table = self._decoded(name, number)
-                place = pc.index(table["record_id"], record_id).as_py()
-                if place >= 0:
-                    return table.slice(place, 1)
-        return None
+    @cached_property
+    def _places(self) -> dict[int, int]:
+        """Which row of the labels a record is."""
+        ids = self._table(LABELS, ["record_id"])["record_id"].to_pylist()
+        return {record_id: place for place, record_id in enumerate(ids)}
 
-    def _decoded(self, name: str, number: int) -> pa.Table:
-        """Return a row group of a file; the last ones that were asked for stay in memory."""
-        key = (name, number)
-        if key not in self._groups:
-            with self._promises.table(name) as file:
-                self._groups[key] = file.group(number)
-            while len(self._groups) > 1 and sum(table.nbytes for table in self._groups.values()) > KEPT_BYTES:
-                self._groups.popitem(last=False)
-        self._groups.move_to_end(key)
-        return self._groups[key]
+    def _owner(self, place: int) -> tuple[ListedShard, int]:
+        """Return the shard of a row of the labels, and which of its rows that is."""
+        number = int(np.searchsorted(self._ends, place, side="right"))
+        shard = self.inventory.shards[number]
+        return shard, place - int(self._ends[number] - shard.rows)
+
+    @cached_property
+    def _ends(self) -> np.ndarray:
+        return np.cumsum([shard.rows for shard in self.inventory.shards], dtype=np.int64)
 
     def _why_no_record(self, record_id: int) -> str:
         for failure in self.inventory.failures:
             if failure.record_id == record_id:
                 return f"record {record_id} could not be simulated: {failure.status} ({failure.reason})"
-        return f"{self.path} has no record {record_id}; it has records 0 to {int(self.index.records.last.max())}"
+        return f"{self.path} has no record {record_id}; it has records 0 to {max(self._places, default=-1)}"
 
-    def _table(self, folder: str, split: str | None, columns: Sequence[str] | None) -> pa.Table:
-        tables = []
-        for name in self._splits(split):
-            with self._promises.table(f"{folder}/{name}.parquet") as file:
-                self._check_columns(file.schema, columns)
-                tables.append(file.read(columns))
-        return pa.concat_tables(tables)
+    def _table(self, name: str, columns: Sequence[str] | None = None) -> pa.Table:
+        """Return a table; the last ones that were asked for stay decoded."""
+        if name not in self._tables:
+            self._tables[name] = self._decoded(name, None)
+            while len(self._tables) > 1 and sum(table.nbytes for table in self._tables.values()) > KEPT_BYTES:
+                self._tables.popitem(last=False)
+        self._tables.move_to_end(name)
+        return self._chosen(self._tables[name], columns)
+
+    def _shard_table(self, name: str, rows: int | None, columns: Sequence[str] | None) -> pa.Table:
+        """Return the rows of a shard in one piece; it does not stay."""
+        table = self._tables.get(name)
+        table = self._decoded(name, columns) if table is None else self._chosen(table, columns)
+        if rows is not None and table.num_rows != rows:
+            raise self._broken(name, f"{counted(table.num_rows, 'row')} instead of {rows}")
+        return table.combine_chunks()
+
+    def _decoded(self, name: str, columns: Sequence[str] | None) -> pa.Table:
+        """Return a table whose every byte is what is promised, before anything is decoded."""
+        content = self.content(name)
+        try:
+            if columns is not None:
+                self._check_columns(columns_of(content), columns)
+            table = unpacked(content, columns)
+            check_form(table, form_of(name, self.inventory, table.column_names), asked=columns)
+        except VerificationError as error:
+            raise self._broken(name, str(error)) from error
+        if name == LABELS and table.num_rows != self.inventory.rows:
+            raise self._broken(name, f"{counted(table.num_rows, 'row')} instead of {self.inventory.rows}")
+        facts = {key: value for key, value in (table.schema.metadata or {}).items() if key != ABOUT}
+        return table.replace_schema_metadata(facts)
+
+    def _chosen(self, table: pa.Table, columns: Sequence[str] | None) -> pa.Table:
+        self._check_columns(table.column_names, columns)
+        return table if columns is None else table.select(list(columns))
+
+    def content(self, name: str) -> bytes:
+        """Return a file of the set whole.
+
+        Raises
+        ------
+        DatasetError
+            If it is missing, none of the set, or its hash is another one.
+        """
+        promised = self.files.get(name)
+        if promised is None:
+            raise self._broken(name, "the manifest does not name it")
+        content = self._storage.get(name, promised.bytes)
+        if hashlib.sha256(content).hexdigest() != promised.sha256:
+            raise self._broken(name, "SHA-256 differs")
+        return content
+
+    def _broken(self, name: str, why: str) -> DatasetError:
+        return DatasetError(f"{self.path}/{name} is not the promised file ({why}); {HOW_TO_GO_ON}")
+
+    def _stretch(self, split: str | None) -> tuple[int, int]:
+        """Return the first row of a split among all labels, and how many it has."""
+        if split is None:
+            return 0, self.inventory.rows
+        (own,) = self._splits(split)
+        before = self.splits[: self.splits.index(own)]
+        return sum(self.inventory.splits[one].rows for one in before), self.inventory.splits[own].rows
 
     def _splits(self, split: str | None) -> tuple[str, ...]:
         if split is None:
@@ -338,27 +369,23 @@ class Dataset:
             raise UsageError(f"{self.path} has no split {split!r}; it has {', '.join(self.splits)}")
         return (split,)
 
-    def _shards(self, split: str | None) -> Iterator[ListedShard]:
-        for name in self._splits(split):
-            yield from self.index.shards(name)
-
-    @cached_property
+    @property
     def files(self) -> dict[str, PromisedFile]:
         """Every file of the set but the manifest, by name, and what is promised of it."""
-        return {**self.inventory.files, **dict(promised_files(self._storage, self.inventory.files[CHECKSUMS]))}
+        return self.inventory.files
 
-    def _check_columns(self, schema: pa.Schema, columns: Sequence[str] | None) -> None:
-        unknown = [column for column in columns or () if column not in schema.names]
+    def _check_columns(self, known: Sequence[str], columns: Sequence[str] | None) -> None:
+        unknown = [column for column in columns or () if column not in known]
         if unknown:
-            raise UsageError(f"{self.path} has no columns {unknown}; it has {', '.join(schema.names)}")
+            raise UsageError(f"{self.path} has no columns {unknown}; it has {', '.join(known)}")
 
     def card(self) -> str:
         """Return README.md, which says in words what the set is."""
-        return self._promises.content(CARD).decode("utf-8", "replace")
+        return self.content(CARD).decode("utf-8", "replace")
 
     def _read_config(self) -> dict[str, Any]:
         try:
-            return dict(yaml.load(self._promises.content(CONFIG), _Loader))
+            return dict(yaml.load(self.content(CONFIG), _Loader))
         except (OSError, ValueError, TypeError, yaml.YAMLError) as error:
             raise DatasetError(f"{self.path}/{CONFIG} cannot be read ({error})") from error
 

@@ -1,4 +1,4 @@
-"""JSON that carries the SHA-256 of itself: the manifest, the sidecars and run.json of a set."""
+"""JSON that carries the SHA-256 of itself: the manifest of a set, and what was found of its precision."""
 
 from __future__ import annotations
 

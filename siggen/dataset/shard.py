@@ -1,108 +1,133 @@
-"""Parquet files of a set: written row group by row group, with encodings that are checked in the footer."""
+"""A table of a set as bytes: Parquet in one row group, and for a shard what it is, sealed, in its metadata.
+
+A shard is the unit of work, of resuming, of checking and of reading. The bytes follow from rows and writer alone, so
+that whoever reads a whole shard and writes it again can tell whether a bit of it was changed.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from contextlib import closing, contextmanager
-from dataclasses import dataclass
-from pathlib import Path
+import hashlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from siggen.dataset.checked_file import checksums
-from siggen.dataset.storage import Storage
-from siggen.errors import DatasetError, counted
+from siggen.dataset.inventory import PromisedFile
+from siggen.errors import VerificationError
+
+ABOUT = b"siggen.shard"
+"""Key of what a shard is, in the metadata of its file of rows."""
 
 LIST_LEAF = ".list.element"
 """What Parquet appends to a list column; an encoding asked for without it is accepted and ignored."""
 
 ZSTD_LEVEL = 1
 SPLIT_BYTES = "BYTE_STREAM_SPLIT"
+MOST_BYTES = 1 << 36
+"""Decoded: above that a table lies about itself."""
+
+GROUP_ROWS = 1 << 15
+"""Rows of a row group of the tables that hold a row per record or damage."""
 
 
-@dataclass(frozen=True, slots=True)
-class FileFacts:
-    """What a committed file promises; `crc32_per_64_kib` are the checksums of its blocks (`checked_file`)."""
+def packed(table: pa.Table, about: Mapping[str, Any] | None = None) -> bytes:
+    """Return a table as Parquet of one row group; a shard says what it is."""
+    whole = table.combine_chunks()
+    if about is not None:
+        content = json.dumps(about, sort_keys=True)
+        text = json.dumps({"sha256": hashlib.sha256(content.encode()).hexdigest(), "content": content})
+        whole = whole.replace_schema_metadata({**(whole.schema.metadata or {}), ABOUT: text.encode()})
+    sink = pa.BufferOutputStream()
+    pq.write_table(whole, sink, row_group_size=max(1, whole.num_rows), **parquet_options(whole.schema))
+    return bytes(sink.getvalue().to_pybytes())
 
-    name: str
-    bytes: int
-    sha256: str
-    crc32_per_64_kib: str
-    rows: int
 
+class PackedTable:
+    """A table that grows batch by batch, and is Parquet in the end; its bytes do not depend on how batches cut it."""
 
-class TableFile:
-    """One Parquet object with `group_rows` rows per row group, written batch by batch.
-
-    At most one row group and one batch are in memory. The bytes depend on the rows alone, not on how the batches
-    cut them.
-    """
-
-    def __init__(self, draft: Path, name: str, schema: pa.Schema, group_rows: int) -> None:
-        self._path, self._name, self._schema, self._group_rows = draft, name, schema, group_rows
+    def __init__(self, schema: pa.Schema) -> None:
+        self._sink = pa.BufferOutputStream()
+        self._writer = pq.ParquetWriter(self._sink, schema, **parquet_options(schema))
         self._pending = schema.empty_table()
-        self._rows = 0
-        self._writer = pq.ParquetWriter(draft, schema, **_options(schema))
 
     def add(self, batch: pa.RecordBatch) -> None:
         """Write the row groups that a batch completes."""
-        self._pending = pa.concat_tables([self._pending, pa.Table.from_batches([batch], self._schema)])
-        while self._pending.num_rows >= self._group_rows:
-            self._write(self._pending.slice(0, self._group_rows))
-            self._pending = self._pending.slice(self._group_rows)
+        more = pa.Table.from_batches([batch]).cast(self._pending.schema)
+        self._pending = pa.concat_tables([self._pending, more])
+        while self._pending.num_rows >= GROUP_ROWS:
+            self._write(self._pending.slice(0, GROUP_ROWS))
+            self._pending = self._pending.slice(GROUP_ROWS)
 
-    def finish(self) -> FileFacts:
-        """Write the rest and return what the file holds.
-
-        Raises
-        ------
-        DatasetError
-            If the footer is not what was asked for.
-        """
-        if self._pending.num_rows:
-            self._write(self._pending)
-        self.close()
-        check_footer(self._path, self._schema, self._rows)
-        with self._path.open("rb") as file:
-            return FileFacts(self._name, self._path.stat().st_size, *checksums(file), self._rows)
-
-    def close(self) -> None:
-        """Close the file, whole or not."""
+    def finish(self) -> bytes:
+        """Return the file."""
+        self._write(self._pending)
         self._writer.close()
+        return bytes(self._sink.getvalue().to_pybytes())
 
-    def _write(self, group: pa.Table) -> None:
+    def _write(self, rows: pa.Table) -> None:
         # one contiguous piece: page borders would otherwise follow the borders of the batches
-        self._writer.write_table(group.combine_chunks(), row_group_size=self._group_rows)
-        self._rows += group.num_rows
+        self._writer.write_table(rows.combine_chunks(), row_group_size=GROUP_ROWS)
 
 
-@contextmanager
-def table_draft(storage: Storage, name: str, schema: pa.Schema, group_rows: int) -> Iterator[TableFile]:
-    """Give a table to fill and finish; nothing is committed if the block raises."""
-    with storage.draft(name) as path, closing(TableFile(path, name, schema, group_rows)) as table:
-        yield table
-
-
-def write_table(
-    storage: Storage, name: str, schema: pa.Schema, batches: Iterable[pa.RecordBatch], group_rows: int
-) -> FileFacts:
-    """Write batches as one Parquet object, see `TableFile`.
-
-    Nothing is committed if the batches raise, or if the footer shows other encodings than asked for.
+def unpacked(content: bytes, columns: Sequence[str] | None = None) -> pa.Table:
+    """Return the rows of a table, whose bytes were compared with their hash before unless nobody knows it yet.
 
     Raises
     ------
-    DatasetError
-        If the footer is not what was asked for.
+    VerificationError
+        If it is no Parquet, or a page does not match its checksum.
     """
-    with table_draft(storage, name, schema, group_rows) as table:
-        for batch in batches:
-            table.add(batch)
-        return table.finish()
+    with _opened(content) as file:
+        footer = file.metadata
+        size = sum(footer.row_group(i).total_byte_size for i in range(footer.num_row_groups))
+        if not 0 <= size <= MOST_BYTES:
+            raise VerificationError(f"it says of itself that it takes {size} bytes")
+        return file.read(columns=None if columns is None else list(columns), use_threads=False)
 
 
-def _options(schema: pa.Schema) -> dict[str, object]:
+def columns_of(content: bytes) -> list[str]:
+    """Return the names of the columns of a table. Raises as `unpacked`."""
+    with _opened(content) as file:
+        return list(file.schema_arrow.names)
+
+
+@contextmanager
+def _opened(content: bytes) -> Iterator[pq.ParquetFile]:
+    try:
+        with pq.ParquetFile(pa.BufferReader(content), page_checksum_verification=True) as file:
+            yield file
+    except (OSError, pa.ArrowException, ValueError, KeyError, OverflowError, RuntimeError) as error:
+        raise VerificationError(f"it cannot be decoded ({error})") from error
+
+
+def about_of(table: pa.Table) -> dict[str, Any]:
+    """Return what a shard says of itself.
+
+    Raises
+    ------
+    VerificationError
+        If it says nothing, or that was changed.
+    """
+    try:
+        found = json.loads((table.schema.metadata or {})[ABOUT])
+        content = found["content"]
+        if hashlib.sha256(content.encode()).hexdigest() != found["sha256"]:
+            raise VerificationError("what it says of itself was changed")
+        return dict(json.loads(content))
+    except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
+        raise VerificationError(f"it does not say what it is ({type(error).__name__})") from error
+
+
+def promised(content: bytes) -> PromisedFile:
+    """Return size and hash of a file."""
+    return PromisedFile(bytes=len(content), sha256=hashlib.sha256(content).hexdigest())
+
+
+def parquet_options(schema: pa.Schema) -> dict[str, Any]:
+    """Return how a table is written."""
     leaves = {field.name: leaf(field) for field in schema}
     numeric_lists = [leaves[field.name] for field in schema if _is_series(field)]
     return {
@@ -126,40 +151,3 @@ def _is_series(field: pa.Field) -> bool:
     """Tell whether a column holds series of floating-point numbers: signals, pulse times, outlines."""
     is_list = isinstance(field.type, pa.ListType | pa.FixedSizeListType)
     return is_list and pa.types.is_floating(field.type.value_type)
-
-
-def check_footer(path: Path, schema: pa.Schema, rows: int) -> None:
-    """Read a file's footer back and compare rows, encodings, compression and statistics with what was asked for.
-
-    Raises
-    ------
-    DatasetError
-        If the writer ignored an option, as it silently does for paths it does not know.
-    """
-    footer = pq.read_metadata(path)
-    problems = [] if footer.num_rows == rows else [f"{counted(footer.num_rows, 'row')} instead of {rows}"]
-    series = {leaf(field) for field in schema if _is_series(field)}
-    for group in range(footer.num_row_groups):
-        for index in range(footer.num_columns):
-            column = footer.row_group(group).column(index)
-            problems += [f"row group {group}, {column.path_in_schema}: {p}" for p in _column_problems(column, series)]
-    if problems:
-        raise DatasetError(
-            f"{path}: the Parquet writer did not do as asked ({'; '.join(problems[:3])}); another pyarrow?"
-        )
-
-
-def _column_problems(column: pq.ColumnChunkMetaData, series: set[str]) -> list[str]:
-    is_series = column.path_in_schema in series
-    problems = []
-    if is_series and column.num_values and (SPLIT_BYTES not in column.encodings or "PLAIN" in column.encodings):
-        problems.append(f"encodings {column.encodings}")
-    if is_series and column.has_dictionary_page:
-        problems.append("has a dictionary")
-    if column.compression != "ZSTD":
-        problems.append(f"compression {column.compression}")
-    if is_series == column.is_stats_set:
-        problems.append("statistics" if is_series else "no statistics")
-    if not column.has_offset_index:
-        problems.append("no page index")
-    return problems

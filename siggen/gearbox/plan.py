@@ -23,7 +23,7 @@ SPLITS = ("train", "validation", "test")
 SUB_BLOCK = 5
 """Specimens among which splits are shuffled; small, so that a set cut off anywhere is still nearly balanced."""
 
-SHARD_BYTES = 64_000_000
+SHARD_BYTES = 16_000_000
 """Aimed size of a full shard on disk."""
 
 DISK_SHARE_PERCENT = 45
@@ -37,12 +37,6 @@ NOISE_SHARE_PERCENT = 55
 
 MANY_QUANTITIES = 30
 """Assumed number of internal quantities where all are stored: 14 with the linear mesh law, 41 with pairs and casing."""
-
-GROUP_CHANNEL_BYTES = 8_000_000
-"""Most raw bytes of one channel in a row group of several rows."""
-
-GROUP_BYTES = 64_000_000
-"""Most raw bytes of all channels in a row group of several rows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +91,10 @@ class ShardPlan:
     def key(self) -> str:
         """Name of the shard, such as `train-00000`."""
         return f"{self.split}-{self.number:05d}"
+
+    def __str__(self) -> str:
+        first = next(self.record_ids, -1)
+        return f"shard {self.key} ({self.record_count} records from {first} on)"
 
 
 class Records(Sequence[PlannedRecord]):
@@ -251,16 +249,6 @@ def _disk_percent(sensor: SensorBase) -> int:
     if sensor.bits == FROM_NOISE:
         return NOISE_SHARE_PERCENT
     return UNQUANTISED_SHARE_PERCENT if sensor.bits is None or sensor.bits > 16 else DISK_SHARE_PERCENT
-
-
-def rows_per_group(design: SetDesign) -> int:
-    """Return the number of records in a row group: a power of two that fills 4 to 8 MB per channel.
-
-    Fewer where all channels together would pass 64 MB, and never less than one.
-    """
-    row_bytes = _row_bytes(design)
-    rows = min(GROUP_CHANNEL_BYTES // row_bytes, GROUP_BYTES // (row_bytes * len(design.channels)))
-    return 1 << (max(1, rows).bit_length() - 1)
 
 
 def _internal_bytes(design: SetDesign) -> int:

@@ -8,6 +8,7 @@ from typing import Any
 import pyarrow as pa
 
 from siggen.columns.record import BEFORE_QUANTITIES
+from siggen.dataset.object_name import DAMAGE, LABELS
 from siggen.publication.publication_facts import PublicationFacts
 
 CONTEXT: dict[str, Any] = {
@@ -54,7 +55,8 @@ CONTEXT: dict[str, Any] = {
     "transform": "cr:transform",
 }
 REPOSITORY = "repository"
-FOLDERS = {"signals": "data", "labels": "metadata", "damage": "damage", "internals": "internals"}
+FOLDERS = {"signals": "data", "internals": "internals"}
+TABLES = {"labels": LABELS, "damage": DAMAGE}
 NO_HASH = "https://github.com/mlcommons/croissant/issues/80"
 """What the specification's own examples give as the hash of a repository, which has none."""
 
@@ -106,7 +108,7 @@ def _files(view: str) -> dict[str, Any]:
         "name": f"{view}-files",
         "containedIn": {"@id": REPOSITORY},
         "encodingFormat": "application/x-parquet",
-        "includes": f"{FOLDERS[view]}/*.parquet",
+        "includes": TABLES.get(view) or f"{FOLDERS[view]}/*.parquet",
     }
 
 

@@ -18,13 +18,13 @@ from siggen.dataset.new_folder import new_folder
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
 from siggen.dataset.seal import sealed
-from siggen.dataset.storage import LocalFolder, Storage, copy_object
+from siggen.dataset.storage import LocalFolder, Storage
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import DatasetError, UsageError, counted
 from siggen.gearbox.description import faults_text, machine_word
 from siggen.gearbox.design import SetDesign, design_of
 from siggen.publication.audit_section import AUDIT, audit_section
-from siggen.publication.croissant import FOLDERS, croissant
+from siggen.publication.croissant import FOLDERS, TABLES, croissant
 from siggen.publication.dataset_info import dataset_info
 from siggen.publication.publication_facts import TEMPLATE, PublicationFacts, read_publication_facts
 from siggen.publication.published_card import published_card
@@ -123,11 +123,11 @@ def publish(
         As of `publication`, or if the target is not empty.
     """
     made = publication(path, facts_file, audit, with_recordings=with_recordings)
-    source, dataset = storage_at(path), open_set(path)
+    dataset = open_set(path)
     own = {**made.texts, **_previews(dataset)}
     with _target(to, {*made.copied, *own}) as target:
         for name in made.copied:
-            copy_object(source, name, target, dataset.files[name].sha256, links=False)
+            target.put(name, dataset.content(name))  # compared with its hash; a copy, never the same file
         for name, content in own.items():
             target.put(name, content)
         files = {name: file for name, file in dataset.manifest["files"].items() if name in made.copied}
@@ -214,17 +214,18 @@ def _counts(dataset: Dataset, views: tuple[str, ...]) -> dict[str, dict[str, tup
     """Return view -> split -> (rows, bytes)."""
     found: dict[str, dict[str, tuple[int, int]]] = {}
     for view in views:
+        if view in TABLES:
+            rows = dataset.labels().num_rows if view == "labels" else dataset.damage().num_rows
+            found[view] = {"records": (rows, dataset.files[TABLES[view]].bytes)}
+            continue
         found[view] = {}
         for split in dataset.splits:
-            begin = (f"{FOLDERS[view]}/{split}.", f"{FOLDERS[view]}/{split}-")
-            size = sum(file.bytes for name, file in dataset.files.items() if name.startswith(begin))
+            size = sum(f.bytes for n, f in dataset.files.items() if n.startswith(f"{FOLDERS[view]}/{split}-"))
             found[view][split] = (_rows(dataset, view, split), size)
     return found
 
 
 def _rows(dataset: Dataset, view: str, split: str) -> int:
-    if view == "damage":
-        return int(dataset.damage(split).num_rows)
     if view == "internals":
         return sum(batch.num_rows for batch in dataset.internals(split, ["record_id"]))
     return dataset.inventory.splits[split].rows

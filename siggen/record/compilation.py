@@ -24,7 +24,7 @@ COLLECTED_EACH = 50_000
 
 @dataclass(frozen=True, slots=True)
 class CompilationPart:
-    """One of the parts; a task for engines.
+    """One of the parts; a task for workers.
 
     Attributes
     ----------

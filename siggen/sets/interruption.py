@@ -1,12 +1,10 @@
-"""Ctrl-C and SIGTERM as one exception that reaches the main thread once, or as a request to come to an end."""
+"""Ctrl-C and SIGTERM as one exception that reaches the main thread once."""
 
 from __future__ import annotations
 
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from types import FrameType, TracebackType
 from typing import TYPE_CHECKING
 
@@ -26,14 +24,10 @@ class Interruption:
     ----------
     requested
         A signal has raised KeyboardInterrupt.
-    draining
-        A signal came where too much would have been lost; the block comes to an end by itself, and the next one raises.
     """
 
     def __init__(self) -> None:
         self.requested = False
-        self.draining = False
-        self._drain: Callable[[], bool] = _at_once
         self._before: dict[signal.Signals, object] = {}
         self._report = sys.unraisablehook
 
@@ -56,15 +50,6 @@ class Interruption:
         if self.requested:
             raise KeyboardInterrupt
 
-    @contextmanager
-    def drained_by(self, drain: Callable[[], bool]) -> Iterator[None]:
-        """Inside the block, ask on the first signal: True where the work comes to an end by itself, soon."""
-        self._drain = drain
-        try:
-            yield
-        finally:
-            self._drain = _at_once
-
     def _lost(self, unraisable: UnraisableHookArgs) -> None:
         """Say nothing of an interruption that C code swallowed: `check` raises it again, and one message is enough."""
         if not (self.requested and unraisable.exc_type is KeyboardInterrupt):
@@ -73,12 +58,5 @@ class Interruption:
     def _stop(self, _number: int, _frame: FrameType | None) -> None:
         if self.requested:
             return
-        if not self.draining and self._drain():
-            self.draining = True
-            return
         self.requested = True
         raise KeyboardInterrupt
-
-
-def _at_once() -> bool:
-    return False

@@ -51,16 +51,6 @@ class LossLimit:
         if not 0.0 <= self.share <= 1.0:
             raise UsageError(f"--allowed-loss: received {self.share:g}; allowed: 0 to 1, where 1 never stops")
 
-    def add(self, shard: str, failures: Sequence[RecordFailure]) -> None:
-        """Count failures of a shard that is being made.
-
-        Raises
-        ------
-        LossError
-        """
-        if failures:
-            self.set(shard, (*self.failures.get(shard, ()), *failures))
-
     def set(self, shard: str, failures: Sequence[RecordFailure]) -> None:
         """Count all failures of a shard, in place of what was counted before.
 

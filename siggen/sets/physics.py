@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from siggen.columns.record import RecordFailure, SimulatedRecord
-from siggen.dataset.chunk import ChunkSimulation
+from siggen.dataset.simulated_rows import RowSimulation
 from siggen.keys.column import Column
 
 if TYPE_CHECKING:
@@ -55,12 +55,12 @@ class Physics:
     life_rows: Callable[[SetDesign, int], Mapping[str, Sequence[Mapping[str, object]]]] = _no_life
     damage_sizes: Callable[[SetDesign, int], Mapping[str, Mapping[str, object]]] = _no_sizes
 
-    def simulation(self, design: SetDesign) -> ChunkSimulation:
+    def simulation(self, design: SetDesign) -> RowSimulation:
         """Return what makes rows of a set, with its columns, those of `internals/` too where it stores some."""
         from siggen.sets.drawn import set_columns
 
         columns = set_columns(design, () if design.stored is None else self.quantities(design))
-        return ChunkSimulation(columns, partial(self.simulate, design))
+        return RowSimulation(columns, partial(self.simulate, design))
 
 
 def physics() -> Physics:

@@ -10,6 +10,8 @@ and then, which is 1e-3 of a quiet record with 16 bits however fine the steps.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import closing
 from dataclasses import asdict, dataclass
 from itertools import zip_longest
 from pathlib import Path
@@ -19,18 +21,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from siggen.columns.record import ChannelColumn
-from siggen.dataset.chunk import Chunk
 from siggen.dataset.manifest import PHYSICS, read_manifest
 from siggen.dataset.reading import Dataset, as_record
 from siggen.dataset.seal import sealed
 from siggen.dataset.storage import LocalFolder
-from siggen.engines.protocol import Engine
-from siggen.engines.registry import engine_of, running
 from siggen.errors import DatasetError
 from siggen.gearbox.design import SetDesign
 from siggen.sensors.quantity import ACCELERATION, STILL_M_S2
 from siggen.sets import physics as contents
-from siggen.sets.verification import design_of_set, why_not_again
+from siggen.sets.verification import OneRecord, design_of_set, why_not_again
+from siggen.workers.choice import workers_of
+from siggen.workers.tasks import Workers, results
 
 FIRST_STEPS, MOST_STEPS = 16, 512
 """Per sample, of the first two references and of the last one."""
@@ -96,7 +97,7 @@ def measure_precision(
     show: Callable[[int, int], None] | None = None,
     *,
     workers: int | None = None,
-    engine: Engine | str | None = None,
+    executor: Executor | str | None = None,
 ) -> Precision:
     """Integrate `count` records of a finished set again, compare, and keep the result in its physics.json.
 
@@ -110,7 +111,7 @@ def measure_precision(
         At least 1.
     show : callable, optional
         Receives records done and their number.
-    workers, engine
+    workers, executor
         As for `verify`.
 
     Raises
@@ -130,7 +131,7 @@ def measure_precision(
     dataset, design = Dataset(storage), design_of_set(storage, manifest)
     chosen = chosen_records(dataset, design.state_names, count)
     ids = sorted(chosen)
-    own = engine_of(engine, 0 if engine is None and workers is None else workers)
+    own = workers_of(executor, 0 if executor is None and workers is None else workers)
     delivered = dict(_again(own, design.unrounded(), ids))
     compared = []
     for done, fine in enumerate(_references(own, design.unrounded(), ids, dataset.channels), start=1):
@@ -163,16 +164,16 @@ class _Compared(NamedTuple):
 
 
 def _references(
-    engine: Engine, design: SetDesign, ids: Sequence[int], channels: Sequence[ChannelColumn]
+    workers: Workers, design: SetDesign, ids: Sequence[int], channels: Sequence[ChannelColumn]
 ) -> Iterator[_Reference]:
     """Yield every record by a reference that agrees with one of half the steps, or by the finest."""
     steps, left = FIRST_STEPS, list(ids)
-    coarse = dict(_again(engine, design.by_reference(steps), left))
+    coarse = dict(_again(workers, design.by_reference(steps), left))
     agreeing = AGREEING * design.integration_tolerance
     while left:
         steps *= 2
         done = set()
-        for record_id, fine in _again(engine, design.by_reference(steps), left):
+        for record_id, fine in _again(workers, design.by_reference(steps), left):
             apart = record_error(channels, coarse[record_id], fine)
             coarse[record_id] = fine
             if apart <= agreeing or steps >= MOST_STEPS:
@@ -202,16 +203,16 @@ def _found(design: SetDesign, ids: Sequence[int], compared: Sequence[_Compared])
     )
 
 
-def _again(engine: Engine, design: SetDesign, ids: Sequence[int]) -> Iterator[tuple[int, Mapping[str, Any]]]:
+def _again(workers: Workers, design: SetDesign, ids: Sequence[int]) -> Iterator[tuple[int, Mapping[str, Any]]]:
     """Yield record after record of a configuration, as they are done."""
-    tasks = [Chunk("precision", range(record_id, record_id + 1)) for record_id in ids]
-    with running(engine, contents.physics().simulation(design), tasks) as results:
-        for index, result in results:
+    tasks = [OneRecord((record_id,)) for record_id in ids]
+    with closing(results(workers, contents.physics().simulation(design), tasks)) as answers:
+        for index, result in answers:
             if result.failures:
                 failure = result.failures[0]
                 method = f"{design.method}, {design.steps_per_sample} steps per sample"
                 raise DatasetError(f"record {ids[index]} fails with {method}: {failure.status} ({failure.reason})")
-            yield ids[index], as_record(result.batch())
+            yield ids[index], as_record(result.rows)
 
 
 def chosen_records(dataset: Dataset, states: Sequence[str], count: int) -> dict[int, str]:

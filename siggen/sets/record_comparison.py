@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from siggen.dataset.chunk import ChunkResult
 from siggen.dataset.reading import as_internals, as_record
+from siggen.dataset.simulated_rows import SimulatedRows
 from siggen.errors import counted
 from siggen.gearbox.design import SetDesign
 
@@ -22,16 +22,16 @@ def result_difference(
     design: SetDesign,
     stored: Mapping[str, Any],
     internals: Mapping[str, Any] | None,
-    result: ChunkResult,
+    result: SimulatedRows,
     *,
     exact: bool,
 ) -> str:
-    """Return in what a stored record differs from the result of a chunk that holds it alone, or an empty string."""
+    """Return in what a stored record differs from the result that holds it alone, or an empty string."""
     if result.failures:
         return f"now fails: {result.failures[0].status} ({result.failures[0].reason})"
-    batch = result.internals_batch()
+    batch = result.internals
     again = as_internals(batch) if batch is not None and batch.num_rows else None
-    found = difference(design, stored, as_record(result.batch()), exact=exact)
+    found = difference(design, stored, as_record(result.rows), exact=exact)
     return found or internal_difference(internals, again, exact=exact)
 
 

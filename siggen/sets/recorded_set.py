@@ -8,7 +8,7 @@ simulate such rows again, so `siggen verify` compares hashes alone. `siggen publ
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -26,36 +26,24 @@ from siggen.columns.record import (
     schema_metadata,
 )
 from siggen.dataset.environment import environment
-from siggen.dataset.id_ranges import id_ranges
-from siggen.dataset.manifest import (
-    BLIND,
-    CARD,
-    CONFIG,
-    DAMAGE_FOLDER,
-    INJECTED,
-    LIFE_FOLDER,
-    MANIFEST,
-    METADATA_FOLDER,
-    SPLITS,
-    build_manifest,
-)
-from siggen.dataset.object_name import data_name
+from siggen.dataset.inventory import ListedSplit
+from siggen.dataset.manifest import BLIND, CARD, CONFIG, INJECTED, MANIFEST
+from siggen.dataset.object_name import DAMAGE, SPLITS, data_name, life_name
+from siggen.dataset.object_name import LABELS as LABELS_FILE
 from siggen.dataset.seal import json_bytes, sealed
-from siggen.dataset.shard import FileFacts, write_table
-from siggen.dataset.sidecar import Sidecar, put_sidecar
+from siggen.dataset.shard import packed
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError
 from siggen.gearbox.design import SetDesign
 from siggen.keys.column import list_of
 from siggen.sets.drawn import set_columns
+from siggen.sets.set_files import manifest_content, put
 
 IDS = ("record_id", "specimen_id", "state_id", "state", "operating_point_id", "repeat", "split")
 LABELS = (
     *("fault", "severity", "faulty_gear", "damaged_area_mm2", "damaged_area_share", "damage_profile_length_mm"),
     *("mesh_stiffness_loss", "speed_hz", "torque_nm"),
 )
-GROUP_ROWS = 16
-
 Row = Mapping[str, Any]
 
 
@@ -104,31 +92,46 @@ def write_recorded_set(
     identity, heard, own_facts = _identity(rows, design.identity), measured or design, BLIND if measured else INJECTED
     own, others = set_columns(design), set_columns(heard)
     schema = _schema(own, others, origin, samples)
-    shares = {split: [row for row in rows if row["split"] == split] for split in SPLITS}
-    sidecars = [_write_rows(storage, schema, split, identity, own) for split, own in shares.items() if own]
-    tables = [table for sidecar in sidecars for table in _write_tables(storage, own, schema, sidecar, shares)]
-    tables += [
-        _write_life(storage, own, name, table, sidecar.split)
-        for sidecar in sidecars
-        for name, table in (life or {}).items()
-    ]
-    storage.put(CONFIG, design.text.encode())
-    storage.put(CARD, card.encode())
-    storage.put(own_facts, json_bytes(facts))
+    shares = {split: found for split in SPLITS if (found := [row for row in rows if row["split"] == split])}
+    files, splits = {}, {}
+    for split, of_split in shares.items():
+        table = pa.Table.from_batches(_batches(of_split, schema), schema)
+        files[data_name(f"{split}-00000")] = put(storage, data_name(f"{split}-00000"), packed(table))
+        splits[split] = _counts(of_split, files[data_name(f"{split}-00000")].bytes)
+    in_order = [row for of_split in shares.values() for row in of_split]
+    tables = {LABELS_FILE: _labels(in_order, schema), DAMAGE: damage_schema(own).empty_table()}
+    tables |= {life_name(name): _life(own, table, tuple(shares)) for name, table in (life or {}).items()}
+    contents = {name: packed(table) for name, table in tables.items()}
+    contents |= {CONFIG: design.text.encode(), CARD: card.encode(), own_facts: json_bytes(facts)}
+    files |= {name: put(storage, name, content) for name, content in contents.items()}
+    gearboxes = len({row["specimen_id"] for row in rows})
     about = {
         "name": f"{design.name}_{'blind' if measured else 'recorded'}",
         "identity": identity,
         "seed": design.seed,
-        "specimens": len({row["specimen_id"] for row in rows}),
+        "specimens": gearboxes,
+        "extensions": [gearboxes],
         "fs_hz": float(design.fs_hz),
         "duration_s": samples / float(design.fs_hz),
-        "rows_per_group": GROUP_ROWS,
         "channels": [asdict(channel) for channel in others.channels],
         "columns": listed_columns(schema),
         "drivetrain": asdict(own.drivetrain),
     }
-    storage.put(MANIFEST, sealed(build_manifest(storage, about, sidecars, tables, [CONFIG, CARD, own_facts])))
+    counts = {f"{split}-00000": len(of_split) for split, of_split in shares.items()}
+    storage.put(MANIFEST, sealed(manifest_content(about, splits, counts, (), files, environment())))
     return folder
+
+
+def _counts(rows: Sequence[Row], size: int) -> ListedSplit:
+    states = [row["state"] for row in rows]
+    return ListedSplit(
+        specimens=len({row["specimen_id"] for row in rows}),
+        rows=len(rows),
+        failed=0,
+        states={state: states.count(state) for state in dict.fromkeys(states)},
+        shards=1,
+        bytes=size,
+    )
 
 
 def _identity(rows: Sequence[Row], configuration: str) -> str:
@@ -149,24 +152,6 @@ def _schema(columns: SetColumns, heard: SetColumns, origin: pa.Schema, samples: 
     return pa.schema([*labels, *origin, *signals, TACHO_COLUMN.field()], metadata=metadata)
 
 
-def _write_rows(storage: LocalFolder, schema: pa.Schema, split: str, identity: str, rows: Sequence[Row]) -> Sidecar:
-    """Write the shard of a split and commit it."""
-    key, states = f"{split}-00000", [row["state"] for row in rows]
-    sidecar = Sidecar(
-        shard=key,
-        split=split,
-        identity=identity,
-        data=write_table(storage, data_name(key), schema, _batches(rows, schema), GROUP_ROWS),
-        specimens=id_ranges(sorted({row["specimen_id"] for row in rows})),
-        records=id_ranges(row["record_id"] for row in rows),
-        rows_per_state={state: states.count(state) for state in dict.fromkeys(states)},
-        failures=(),
-        environment=environment(),
-    )
-    put_sidecar(storage, sidecar)
-    return sidecar
-
-
 def _batches(rows: Sequence[Row], schema: pa.Schema) -> Iterator[pa.RecordBatch]:
     fields = [field for field in schema if pa.types.is_fixed_size_list(field.type)]
     samples, duration_s = fields[0].type.list_size, float(schema.metadata[b"duration_s"])
@@ -177,22 +162,13 @@ def _batches(rows: Sequence[Row], schema: pa.Schema) -> Iterator[pa.RecordBatch]
         yield pa.RecordBatch.from_pylist([{**row, **cut, TACHO_COLUMN.name: inside}], schema=schema)
 
 
-def _write_tables(
-    storage: LocalFolder, columns: SetColumns, schema: pa.Schema, sidecar: Sidecar, shares: Mapping[str, Sequence[Row]]
-) -> Iterable[FileFacts]:
-    """Write the labels of a split, and its table of damage, which is empty: labels say what was simulated."""
+def _labels(rows: Sequence[Row], schema: pa.Schema) -> pa.Table:
     fields = [field for field in schema if not pa.types.is_list(field.type) | pa.types.is_fixed_size_list(field.type)]
     names = pa.schema(fields, metadata=schema.metadata)
-    labels = [{name: row[name] for name in names.names} for row in shares[sidecar.split]]
-    batch = pa.RecordBatch.from_pylist(labels, schema=names)
-    yield write_table(storage, f"{METADATA_FOLDER}/{sidecar.split}.parquet", names, [batch], GROUP_ROWS)
-    name = f"{DAMAGE_FOLDER}/{sidecar.split}.parquet"
-    yield write_table(storage, name, damage_schema(columns), [], GROUP_ROWS)
+    return pa.Table.from_pylist([{name: row[name] for name in names.names} for row in rows], schema=names)
 
 
-def _write_life(storage: LocalFolder, columns: SetColumns, name: str, table: pa.Table, split: str) -> FileFacts:
-    """Write the rows of a split of a table of `life/`."""
-    own = table.filter(pc.equal(table.column("split"), split))
-    schema = own.schema.with_metadata(schema_metadata(columns))
-    batches = own.replace_schema_metadata(schema.metadata).to_batches()
-    return write_table(storage, f"{LIFE_FOLDER}/{name}/{split}.parquet", schema, batches, GROUP_ROWS)
+def _life(columns: SetColumns, table: pa.Table, splits: Sequence[str]) -> pa.Table:
+    """Return a table of lives, split by split."""
+    parts = [table.filter(pc.equal(table.column("split"), split)) for split in splits]
+    return pa.concat_tables(parts).replace_schema_metadata(schema_metadata(columns))

@@ -4,26 +4,27 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from typing import TypeVar
 
-from siggen.columns.record import RecordFailure
-from siggen.dataset.sidecar import Sidecar
-from siggen.engines.protocol import Engine
 from siggen.record.stage_times import StageTimes
 from siggen.sets.loss_limit import LossLimit
+from siggen.sets.shard_making import MadeShard
 from siggen.sources import installed_version
+from siggen.workers.tasks import Workers
 
 Events = Callable[[Mapping[str, object]], None]
 """Called with every event of a run, in the process that drives it; what it raises ends the run."""
 
-LOG_VERSION = 1
+LOG_VERSION = 2
 
 STAMP = ("time", "event")
 EVENTS: dict[str, tuple[str, ...]] = {
-    "run_started": (*("log_version", "siggen", "name", "identity", "path", "engine", "workers", "records", "shards"),),
+    "run_started": (
+        *("log_version", "siggen", "name", "identity", "path", "executor", "workers", "records", "shards"),
+    ),
     "shard_taken_over": ("shard", "rows", "failures", "records_done", "records_total"),
     "record_failed": ("shard", "record_id", "status", "reason"),
     "shard_done": (
@@ -48,8 +49,8 @@ class RunJournal:
         Wall seconds of the process that drives the run, by stage.
     worker_cpu_s
         CPU seconds of the workers by stage, summed over all of them.
-    failures
-        Records of this run that could not be simulated.
+    made, failures
+        Records that this run simulated, and those of them that could not be.
     limit
         Ends a run that loses too many of them; None: no number is too many.
     """
@@ -59,7 +60,7 @@ class RunJournal:
     driver: StageTimes = field(default_factory=StageTimes)
     worker_cpu_s: dict[str, float] = field(default_factory=dict)
     failures: int = 0
-    shard_started_s: float = 0.0
+    made: int = 0
     limit: LossLimit | None = None
 
     @property
@@ -67,45 +68,46 @@ class RunJournal:
         """Seconds since the run began."""
         return time.perf_counter() - self.started_s
 
-    def start(self, name: str, identity: str, path: str, engine: Engine, records: int, shards: int) -> None:
+    def start(self, name: str, identity: str, path: str, workers: Workers, records: int, shards: int) -> None:
         """Tell that a run begins, with the records and shards of the whole set."""
         facts = {"log_version": LOG_VERSION, "siggen": installed_version(), "name": name}
-        who = {"engine": type(engine).__name__, "workers": engine.workers}
+        who = {"executor": workers.name, "workers": workers.count}
         facts |= {"identity": identity, "path": path, **who, "records": records, "shards": shards}
         self._tell("run_started", facts)
-        self.expect(records)
-
-    def expect(self, records: int) -> None:
-        """Note how many records the run shall have at its end, of which a share may fail."""
         if self.limit is not None:
             self.limit.records = records
 
-    def taken_over(self, sidecar: Sidecar, done: int, total: int) -> None:
-        """Tell of a shard that an earlier run made."""
-        self._tell("shard_taken_over", {**_content(sidecar), "records_done": done, "records_total": total})
-        if self.limit is not None:
-            self.limit.set(sidecar.shard, sidecar.failures)
+    def shard(self, shard: MadeShard, done: int, total: int) -> None:
+        """Tell of a shard that is there, of the records that failed for it, and of the pace of this run.
 
-    def failed(self, shard: str, failures: Sequence[RecordFailure]) -> None:
-        """Tell of records that could not be simulated, as soon as that is known."""
-        self.failures += len(failures)
-        for failure in failures:
-            self._tell("record_failed", {"shard": shard, **asdict(failure)})
-        if self.limit is not None:
-            self.limit.add(shard, failures)
+        What a run does once, as compiling, is no part of its pace.
 
-    def shard_done(self, sidecar: Sidecar, seconds: float, made: int, done: int, total: int) -> None:
-        """Tell of a shard that is committed, and of the pace of this run, which has made `made` records.
-
-        What a run does once, as compiling or looking for earlier shards, is no part of its pace.
+        Raises
+        ------
+        LossError
+            If more records of a state are lost than its user allows.
         """
-        working = self.driver.so_far()
-        rate = made / max(working.get("waiting", 0.0), 1e-9)
-        facts = {**_content(sidecar), "bytes": sum(file.bytes for file in sidecar.files), "seconds": round(seconds, 3)}
-        facts |= {"records_done": done, "records_total": total, "records_per_s": round(rate, 3)}
-        self._tell("shard_done", {**facts, "left_s": round((total - done) / rate, 1) if rate else None})
+        content: dict[str, object] = {
+            "shard": shard.shard,
+            "rows": shard.rows,
+            "failures": len(shard.failures),
+            "records_done": done,
+            "records_total": total,
+        }
+        self.add(shard.cpu_s)
+        if not shard.made:
+            self._tell("shard_taken_over", content)
+        else:
+            self.made += shard.made
+            self.failures += len(shard.failures)
+            for failure in shard.failures:
+                self._tell("record_failed", {"shard": shard.shard, **asdict(failure)})
+            rate = self.made / max(self.driver.so_far().get("waiting", 0.0), 1e-9)
+            content |= {"bytes": sum(file.bytes for file in shard.files.values())}
+            content |= {"seconds": round(sum(shard.cpu_s.values()), 3), "records_per_s": round(rate, 3)}
+            self._tell("shard_done", {**content, "left_s": round((total - done) / rate, 1) if rate else None})
         if self.limit is not None:
-            self.limit.set(sidecar.shard, sidecar.failures)
+            self.limit.set(shard.shard, shard.failures)
 
     def end(self, outcome: str, message: str, made: int, taken_over: int) -> None:
         """Tell that the run is over: done, interrupted, failed (with the message), or finished before."""
@@ -149,7 +151,3 @@ def stamped(event: str, facts: Mapping[str, object]) -> dict[str, object]:
     """Return an event with the time of now in UTC, its fields in the order of `EVENTS`."""
     now = datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
     return {"time": now, "event": event, **{name: facts[name] for name in EVENTS[event]}}
-
-
-def _content(sidecar: Sidecar) -> dict[str, object]:
-    return {"shard": sidecar.shard, "rows": sidecar.data.rows, "failures": len(sidecar.failures)}

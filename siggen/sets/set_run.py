@@ -3,62 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, field
+from contextlib import closing, contextmanager, suppress
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import PurePath
-from typing import Any
 
-from siggen.columns.internals import internals_group_rows
-from siggen.columns.record import RecordFailure, SetColumns, listed_columns, record_schema
-from siggen.dataset.card import card
-from siggen.dataset.chunk import ChunkSimulation
-from siggen.dataset.environment import environment, fingerprint
-from siggen.dataset.excerpt import Excerpt, Excerpts
-from siggen.dataset.extensions import EXTENSIONS
-from siggen.dataset.label_tables import write_tables
-from siggen.dataset.manifest import CARD, CONFIG, MANIFEST, RUN, SPLITS, build_manifest, read_manifest
-from siggen.dataset.object_name import SIDECAR_FOLDER, sidecar_name
-from siggen.dataset.pieces import Pieces
-from siggen.dataset.seal import sealed
-from siggen.dataset.sealed_streams import Maker
-from siggen.dataset.sidecar import Sidecar
+from siggen.columns.record import RecordFailure
+from siggen.dataset.environment import environment
+from siggen.dataset.inventory import Inventory
+from siggen.dataset.manifest import CONFIG
+from siggen.dataset.object_name import DATA_FOLDER, data_name
+from siggen.dataset.simulated_rows import RowSimulation
 from siggen.dataset.storage import Storage
-from siggen.engines.protocol import Engine
-from siggen.errors import EXIT_INTERRUPTED, SiggenError, counted
+from siggen.errors import EXIT_INTERRUPTED, DatasetError, SiggenError, UsageError, counted
 from siggen.gearbox.design import SetDesign
-from siggen.gearbox.plan import ShardPlan, rows_per_group, shards
+from siggen.gearbox.plan import SPLITS, ShardPlan, shards
+from siggen.record.compilation import run_part
 from siggen.sets import physics as contents
-from siggen.sets.committed_shards import usable_shards
 from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import LossLimit
-from siggen.sets.run_facts import run_facts
 from siggen.sets.run_journal import Events, RunJournal
-from siggen.sets.shard_making import ShardMaking
-from siggen.sets.shard_work import GroupRows
-
-
-def manifest_facts(design: SetDesign, columns: SetColumns) -> dict[str, Any]:
-    """Return what the manifest says of a set beside its files."""
-    internals = [{"name": c.name, "unit": c.unit, "meaning": c.meaning} for c in columns.quantities]
-    return {
-        **({"internals": internals} if internals else {}),
-        "name": design.name,
-        "identity": design.identity,
-        "seed": design.seed,
-        "specimens": design.specimens,
-        "fs_hz": float(design.fs_hz),
-        "duration_s": float(design.duration_s),
-        "rows_per_group": rows_per_group(design),
-        "channels": [asdict(channel) for channel in columns.channels],
-        "columns": listed_columns(record_schema(columns)),
-        "drivetrain": asdict(columns.drivetrain),
-        **({} if design.tolerance is None else {"integration_tolerance": design.tolerance}),
-    }
-
+from siggen.sets.set_files import MadeShards, put_last
+from siggen.sets.shard_making import MadeShard, ShardMaker
+from siggen.workers.tasks import Workers, results
 
 Progress = Callable[[int, int], None]
-"""(records done, records of the set); called after every chunk."""
+"""(records done, records of the set); called after every shard."""
+
+Part = tuple[int, int]
+"""Number of a part, from 1, and how many there are."""
 
 
 class InterruptionError(SiggenError):
@@ -78,7 +51,7 @@ class Generation:
     was_finished
         The set was there already; nothing was written.
     rows, failures
-        Of the whole set.
+        Of the whole set, or of its part.
     notes
         Sentences on shards that another version made, and on damaged ones.
     """
@@ -97,29 +70,6 @@ def _silent(done: int, total: int) -> None:
     """Show nothing."""
 
 
-def set_run(
-    design: SetDesign,
-    storage: Storage,
-    engine: Engine,
-    progress: Progress | None,
-    interruption: Interruption,
-    earlier: Sequence[int] = (),
-    events: Events | None = None,
-    limit: LossLimit | None = None,
-) -> SetRun:
-    """Return a run that makes what is missing of a set; `earlier` as for `siggen.gearbox.plan.shards`."""
-    journal = RunJournal(events, limit=limit)
-    with journal.driver.during("planning"):
-        physics = contents.physics()
-        simulation = physics.simulation(design)
-        planned = planned_shards(design, earlier)
-    run = SetRun(design, storage, engine, physics, simulation, progress or _silent, interruption, planned, journal)
-    run.trusted = frozenset({fingerprint(run.environment)})
-    run.total = sum(shard.record_count for shard in planned)
-    journal.start(design.name, design.identity, str(storage.location), engine, run.total, len(planned))
-    return run
-
-
 def planned_shards(design: SetDesign, earlier: Sequence[int] = ()) -> list[ShardPlan]:
     """Return the shards of a set in the order in which they are made; `earlier` as for `plan.shards`."""
     return [shard for split in SPLITS for shard in shards(design, split, earlier)]
@@ -127,211 +77,171 @@ def planned_shards(design: SetDesign, earlier: Sequence[int] = ()) -> list[Shard
 
 @dataclass(slots=True)
 class SetRun:
-    """One call of `generate` or its kin on a set that is not finished.
+    """One call of `generate` on a set that is not finished.
 
     Attributes
     ----------
-    planned
-        All shards of the set.
-    trusted
-        Fingerprints whose shards are taken over.
-    notes
-        Sentences on shards that another version made.
+    earlier
+        Numbers of gearboxes at which the set was finished before.
+    part
+        Which shards are made, and nothing else; None: all, and the files of the set.
     """
 
     design: SetDesign
     storage: Storage
-    engine: Engine
-    physics: contents.Physics
-    simulation: ChunkSimulation
-    progress: Progress
+    workers: Workers
     interruption: Interruption
-    planned: Sequence[ShardPlan]
-    journal: RunJournal = field(default_factory=RunJournal)
-    environment: dict[str, str] = field(default_factory=environment)
-    sidecars: dict[str, Sidecar] = field(default_factory=dict)
-    pieces: Pieces = field(init=False)
-    excerpts: Excerpts = field(init=False)
-    making: ShardMaking = field(init=False)
-    done: int = 0
-    made: int = 0
-    shards_made: int = 0
-    total: int = 0
-    trusted: frozenset[str] = frozenset()
-    notes: list[tuple[str, str]] = field(default_factory=list)
+    earlier: tuple[int, ...] = ()
+    part: Part | None = None
+    progress: Progress = _silent
+    events: Events | None = None
+    limit: LossLimit | None = None
+    journal: RunJournal = field(init=False)
+    made: MadeShards = field(init=False)
+    planned: Sequence[ShardPlan] = field(init=False)
+    _wanted: Sequence[ShardPlan] = field(init=False)
+    _done: int = field(default=0, init=False)
 
     def __post_init__(self) -> None:
-        maker = Maker(self.design.identity, fingerprint(self.environment), self.environment)
-        self.pieces = Pieces(self.storage, maker, self.simulation.columns)
-        physics, design, columns = self.physics, self.design, self.simulation.columns
-        damage, lives = partial(physics.damage_rows, design), partial(physics.life_rows, design)
-        self.excerpts = Excerpts(columns, self.storage, maker, damage, lives)
-        self.making = ShardMaking(
-            self.storage,
-            self.engine,
-            self.simulation,
-            partial(physics.to_compile, design),
-            design.state_names,
-            GroupRows(rows_per_group(design), internals_group_rows(columns) if columns.quantities else 0),
-            self.interruption,
-            self.journal,
-            self.pieces,
-            self.excerpts,
-            self._advance,
-        )
+        self.journal = RunJournal(self.events, limit=self.limit)
+        with self.journal.driver.during("planning"):
+            self.planned = planned_shards(self.design, self.earlier)
+        number, of = self.part or (1, 1)
+        if not 1 <= number <= of:
+            raise UsageError(f"part: received {number} of {of}; allowed: i of N with i from 1 to N, such as (3, 16)")
+        self._wanted = self.planned[number - 1 :: of]
+        self.made = MadeShards()
 
-    def finish(self) -> Generation:
-        """Make what is missing, from the first shard to the manifest.
+    def run(self) -> Generation:
+        """Make what is missing.
 
         Raises
         ------
         InterruptionError
             After SIGINT or SIGTERM.
         """
+        records = sum(shard.record_count for shard in self._wanted)
+        design = self.design
+        self.journal.start(
+            design.name, design.identity, self.storage.location, self.workers, records, len(self._wanted)
+        )
         with self._told():
+            self._refuse_others()
             if not self.storage.exists(CONFIG):
-                self.storage.put(CONFIG, self.design.text.encode())
-            taken_over = self.make(self.planned)
-            return self.conclude(taken_over)
+                self.storage.put(CONFIG, design.text.encode())
+            with self.journal.driver.during("planning"):
+                physics = contents.physics()
+                maker = self._maker(physics, physics.simulation(design))
+            self._compile(physics)
+            self._make(maker, records)
+            if self.part is None:
+                with self.journal.driver.during("closing"):
+                    extensions = [*self.earlier, design.specimens]
+                    columns = maker.simulation.columns
+                    put_last(design, self.storage, columns, self.planned, self.made, extensions, maker.environment)
+        return self._generation()
 
-    def finish_some(self, wanted: Sequence[ShardPlan]) -> Generation:
-        """Make some shards and nothing else; `rows` and `failures` are theirs. Raises as `finish`."""
-        with self._told():
-            if not self.storage.exists(CONFIG):
-                self.storage.put(CONFIG, self.design.text.encode())
-            taken_over = self.make(wanted)
-        sidecars = [self.sidecars[shard.key] for shard in wanted]
+    def _refuse_others(self) -> None:
+        """Refuse shards that are none of this set: an extension to more gearboxes was begun, and is to be finished."""
+        own = {data_name(shard.key) for shard in self.planned}
+        strange = [name for name in self.storage.names(DATA_FOLDER) if name not in own]
+        if strange:
+            where = self.storage.location
+            raise DatasetError(
+                f"{where}: holds {counted(len(strange), 'file')} that a set of {self.design.specimens} gearboxes does "
+                f"not have ({', '.join(strange[:3])}). If an extension was begun, end it: siggen generate "
+                f"{where}/{CONFIG} --set specimens=N --out {where} with the number it had; else move them away"
+            )
+
+    def _maker(self, physics: contents.Physics, simulation: RowSimulation) -> ShardMaker:
+        return ShardMaker(
+            simulation,
+            self.storage,
+            partial(physics.damage_rows, self.design),
+            partial(physics.life_rows, self.design),
+            environment(),
+            self.earlier,
+            self.design.state_names,
+            with_tables=self.part is None,
+        )
+
+    def _compile(self, physics: contents.Physics) -> None:
+        """Compile once for all workers, which would compile the same side by side."""
+        parts = physics.to_compile(self.design) if self.workers.name == "processes" else ()
+        if parts:
+            with self.journal.driver.during("compiling"), closing(results(self.workers, run_part, parts)) as compiled:
+                for _ in compiled:
+                    self.interruption.check()
+
+    def _make(self, maker: ShardMaker, records: int) -> None:
+        self.progress(0, records)
+        answers = results(self.workers, maker, self._wanted, self.journal.say)
+        with self.journal.driver.during("workers"), closing(answers):
+            for number, made in self.journal.waiting(answers):
+                self.interruption.check()
+                if made.error is not None:
+                    raise made.error
+                self._hear(self._wanted[number], made, records)
+
+    def _hear(self, shard: ShardPlan, made: MadeShard, records: int) -> None:
+        self.made.add(made)
+        self._done += shard.record_count
+        self.progress(self._done, records)
+        self.journal.shard(made, self._done, records)
+
+    def _generation(self) -> Generation:
+        made = [self.made.by_name[shard.key] for shard in self._wanted]
         return Generation(
             path=self.storage.path,
-            rows=sum(sidecar.data.rows for sidecar in sidecars),
-            failures=tuple(failure for sidecar in sidecars for failure in sidecar.failures),
-            records_made=self.made,
-            shards_taken_over=taken_over,
+            rows=sum(shard.rows for shard in made),
+            failures=tuple(failure for shard in made for failure in shard.failures),
+            records_made=self._records_made,
+            shards_taken_over=self._taken_over,
             seconds=self.journal.seconds,
-            notes=tuple(f"{key} is made again: {reason}" for key, reason in self.notes),
+            notes=tuple(f"{shard.shard} is made again: {shard.note}" for shard in made if shard.note),
         )
 
-    def make(self, wanted: Sequence[ShardPlan]) -> int:
-        """Make those of the wanted shards that no earlier run committed; return how many one did."""
-        self.total = sum(shard.record_count for shard in wanted)
-        self.journal.expect(self.total)
-        self.progress(self.done, self.total)
-        with self.journal.driver.during("taking over"):
-            self.take_over(wanted)
-        taken_over = len(self.sidecars)
-        missing = [shard for shard in wanted if shard.key not in self.sidecars]
-        self.making.make(missing, tuple(self.sidecars), self._committed)
-        return taken_over
+    @property
+    def _records_made(self) -> int:
+        return sum(shard.made for shard in self.made.by_name.values())
 
-    def conclude(self, taken_over: int) -> Generation:
-        """Write tables, card and manifest over all shards, which are there."""
-        sidecars = [self.sidecars[shard.key] for shard in self.planned]
-        with self.journal.driver.during("closing"):
-            manifest = self._conclude(sidecars, taken_over)
-        return Generation(
-            path=self.storage.path,
-            rows=manifest["rows"],
-            failures=tuple(failure for sidecar in sidecars for failure in sidecar.failures),
-            records_made=self.made,
-            shards_taken_over=taken_over,
-            seconds=self.journal.seconds,
-            notes=tuple(f"{key} is made again: {reason}" for key, reason in self.notes),
-        )
-
-    def take_over(self, wanted: Sequence[ShardPlan]) -> None:
-        """Find the shards that earlier runs committed with a trusted fingerprint."""
-        missing = [shard for shard in wanted if shard.key not in self.sidecars]
-        check, of_set = self.interruption.check, (self.design.identity, self.design.state_names)
-        for sidecar in usable_shards(*of_set, self.storage, missing, self.trusted, self.notes, check):
-            self.accept(sidecar)
-
-    def accept(self, sidecar: Sidecar) -> None:
-        """Take a shard over."""
-        self.sidecars[sidecar.shard] = sidecar
-        self._advance(sum(last - first + 1 for first, last in sidecar.records), 0)
-        self.journal.taken_over(sidecar, self.done, self.total)
-
-    def _committed(self, shard: ShardPlan, sidecar: Sidecar, seconds: float) -> None:
-        self.sidecars[shard.key] = sidecar
-        self.shards_made += 1
-        self.journal.shard_done(sidecar, seconds, self.made, self.done, self.total)
-
-    def _conclude(self, sidecars: Sequence[Sidecar], taken_over: int) -> dict[str, Any]:
-        """Write configuration, tables, card and run.json; the manifest comes last and makes the set a finished one."""
-        self.storage.put(CONFIG, self.design.text.encode())
-        tables, columns = [], self.simulation.columns
-        for split in SPLITS:
-            of_split = [sidecar for sidecar in sidecars if sidecar.split == split]
-            if of_split:
-                tables += write_tables(self.storage, columns, split, self._excerpts(of_split))
-            self.interruption.check()
-        self.storage.put(CARD, card(self.design, sidecars, columns).encode())
-        written = [CONFIG, CARD, *([EXTENSIONS] if self.storage.exists(EXTENSIONS) else [])]
-        manifest = build_manifest(self.storage, manifest_facts(self.design, columns), sidecars, tables, written)
-        counts = {"made": self.made, "taken_over": taken_over}
-        facts = run_facts(
-            self.design.duration_s, self.engine, sidecars, self.journal, **counts, environment=self.environment
-        )
-        self.pieces.clear()
-        self.excerpts.clear()
-        self.storage.put(RUN, sealed(facts))
-        self.storage.put(MANIFEST, sealed(manifest))
-        return manifest
-
-    def _excerpts(self, sidecars: Sequence[Sidecar]) -> Iterator[Excerpt]:
-        for excerpt in self.excerpts.in_order([sidecar.shard for sidecar in sidecars]):
-            self.interruption.check()
-            yield excerpt
+    @property
+    def _taken_over(self) -> int:
+        return sum(not shard.made for shard in self.made.by_name.values())
 
     @contextmanager
     def _told(self) -> Iterator[None]:
         """Tell how the run ended; a signal is put into words."""
         try:
-            yield
+            with closing(self.made):
+                yield
         except KeyboardInterrupt:
             self._tidy()
-            message = self._how_to_continue(self._lost())
-            self.journal.end("interrupted", message, self.made, len(self.sidecars) - self.shards_made)
+            message = self._how_to_continue()
+            self.journal.end("interrupted", message, self._records_made, self._taken_over)
             raise InterruptionError(message) from None
         except Exception as error:
             self._tidy()
-            self.journal.end("failed", str(error), self.made, len(self.sidecars) - self.shards_made)
+            self.journal.end("failed", str(error), self._records_made, self._taken_over)
             raise
-        self.journal.end("done", "", self.made, len(self.sidecars) - self.shards_made)
+        self.journal.end("done", "", self._records_made, self._taken_over)
 
     def _tidy(self) -> None:
-        """Delete what workers had half written when the engine ended them."""
+        """Delete what workers had half written when they were ended."""
         with suppress(SiggenError, OSError):  # what went wrong first is what has to be said
-            self.storage.delete_leftovers()
+            self.storage.delete_leftovers(of_dead=True)
 
-    def _lost(self) -> str:
-        """Say how much work is lost."""
-        under_way = self.making.under_way
-        lost_s = [] if under_way is None else under_way.lost_s()
-        if not lost_s:
-            return "nothing is lost"
-        return f"lost is what was under way, {sum(lost_s):.0f} s of work (of one worker {lost_s[-1]:.0f} s at most)"
-
-    def _how_to_continue(self, lost: str) -> str:
+    def _how_to_continue(self) -> str:
         # workers may have committed shards of which this process has not heard
-        there = set(self.storage.names(SIDECAR_FOLDER))
-        finished = {shard.key for shard in self.planned if sidecar_name(shard.key) in there}
-        kept = self.making.records_kept(finished)
-        others = f", and {counted(kept, 'record')} of others" if kept else ""
+        there = set(self.storage.names(DATA_FOLDER))
+        finished = sum(data_name(shard.key) in there for shard in self._wanted)
         return (
-            f"stopped: {len(finished)} of {len(self.planned)} shards of {self.storage.location} are finished and stay"
-            f"{others}; {lost}; the same command continues from there"
+            f"stopped: {finished} of {len(self._wanted)} shards of {self.storage.location} are finished and stay; lost "
+            "is what was under way, a shard of each worker at most; the same command continues from there"
         )
 
-    def _advance(self, done: int, made: int) -> None:
-        self.made += made
-        if done:
-            self.done += done
-            self.progress(self.done, self.total)
 
-
-def unchanged(storage: Storage, events: Events | None = None) -> Generation:
+def unchanged(storage: Storage, manifest: Inventory, events: Events | None = None) -> Generation:
     """Return what a call did that found the set finished."""
-    manifest = read_manifest(storage)
     RunJournal(events).end("finished before", "", 0, 0)
     return Generation(storage.path, manifest.rows, manifest.failures, was_finished=True)

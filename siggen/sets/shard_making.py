@@ -1,242 +1,265 @@
-"""From missing shards to committed ones: stretches of records to workers, then the closing of each shard.
+"""What workers do: make a shard, or find it whole, and give back what the manifest and the small tables need of it.
 
-The process that drives a run sees no rows: workers keep what they make in pieces, and one of them puts the pieces of a
-shard together as soon as all are there.
+All that is written follows from configuration and index, and every file is there as a whole or not at all: a task that
+runs twice, also at once, leaves the same files. The file of rows comes last, and commits the shard.
 """
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+import hashlib
+import os
+import platform
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from itertools import groupby
+from operator import itemgetter
 
-from siggen.dataset.chunk import Chunk, ChunkSimulation
-from siggen.dataset.excerpt import Excerpts
-from siggen.dataset.object_name import SIDECAR_FOLDER, sidecar_name
-from siggen.dataset.pieces import Pieces
-from siggen.dataset.sidecar import Sidecar, ranges
+import pyarrow as pa
+
+from siggen.columns.internals import internals_schema
+from siggen.columns.life import LIFE_TABLES, NULLABLE
+from siggen.columns.record import (
+    RecordFailure,
+    SetColumns,
+    damage_schema,
+    label_schema,
+    record_schema,
+    schema_metadata,
+)
+from siggen.dataset.environment import fingerprint, version_text
+from siggen.dataset.inventory import PromisedFile
+from siggen.dataset.manifest import CONFIG
+from siggen.dataset.object_name import DAMAGE, LABELS, data_name, internals_name, life_name
+from siggen.dataset.shard import ABOUT, about_of, packed, promised, unpacked
+from siggen.dataset.simulated_rows import RowSimulation
 from siggen.dataset.storage import Storage
-from siggen.engines.processes import ProcessEngine
-from siggen.engines.protocol import DrainingEngine, Engine, Unfinished
-from siggen.engines.registry import running
-from siggen.errors import EngineError
+from siggen.errors import DatasetError, VerificationError
+from siggen.file_writing import UNWRITABLE
 from siggen.gearbox.plan import ShardPlan
-from siggen.record.compilation import CompilationPart, run_part
-from siggen.sets.interruption import Interruption
-from siggen.sets.run_journal import RunJournal
-from siggen.sets.shard_work import Answer, ChunkStretch, Closing, Excerpting, GroupRows, ShardWork, Task, shard_chunks
-from siggen.sets.under_way import STOP_AT_ONCE_S, UnderWay
+from siggen.record.stage_times import collected, stage
 
-STRETCHES_PER_WORKER = 2
-"""Of what is left, a worker takes the share that leaves it so many: long stretches first, and short ones at the end.
+DamageRows = Callable[[Sequence[int]], Iterable[Mapping[str, object]]]
+"""Ids of one specimen's records -> rows of the damage table, as siggen.record gives them."""
 
-With twice as many, 1,000 workers ended a million records 10 s later: most shards were closed by a task of its own.
-"""
+LifeRows = Callable[[int], Mapping[str, Sequence[Mapping[str, object]]]]
+"""specimen -> rows by the name of their table, as siggen.record gives them."""
 
 
-@dataclass(slots=True)
-class Unclosed:
-    """A shard that is being made: records that are neither simulated nor kept, and those that are; when it began."""
-
-    shard: ShardPlan
-    left: int
-    kept: int
-    begun_s: float
-
-
-@dataclass(slots=True)
-class ShardMaking:
-    """Makes shards of a set.
+@dataclass(frozen=True, slots=True)
+class MadeShard:
+    """What came of a shard, without its rows: some kB.
 
     Attributes
     ----------
-    advance : callable
-        Called with how many records more are kept or written, and how many this run made.
-    under_way
-        What the workers have, from the first task on.
+    made
+        Records that were simulated for it: none if it was there.
+    tables
+        Name of a small table -> its rows of this shard, as a compressed Arrow stream.
+    note
+        Why it was made again, if something was there.
+    error
+        What a disk or a store said that takes or gives no more; then nothing else holds.
     """
 
+    shard: str
+    rows: int = 0
+    rows_per_state: Mapping[str, int] = field(default_factory=dict)
+    failures: tuple[RecordFailure, ...] = ()
+    files: Mapping[str, PromisedFile] = field(default_factory=dict)
+    made: int = 0
+    tables: Mapping[str, bytes] = field(default_factory=dict)
+    note: str = ""
+    cpu_s: Mapping[str, float] = field(default_factory=dict, compare=False)
+    error: DatasetError | OSError | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ShardMaker:
+    """The function that is run for every shard; carries to the workers once what makes a set.
+
+    Attributes
+    ----------
+    damage_rows, life_rows
+        What makes the rows that stand in no shard: pure, and importable by name.
+    environment
+        Of whoever drives the run: the maker of all shards.
+    earlier
+        Numbers of gearboxes at which the set was finished before.
+    states
+        Names of all that a gearbox may be in.
+    with_tables
+        Whether the rows of small tables are asked for: a part of a set needs none.
+    """
+
+    simulation: RowSimulation
     storage: Storage
-    engine: Engine
-    simulation: ChunkSimulation
-    to_compile: Callable[[], Sequence[CompilationPart]]
+    damage_rows: DamageRows
+    life_rows: LifeRows
+    environment: Mapping[str, str]
+    earlier: tuple[int, ...]
     states: tuple[str, ...]
-    group_rows: GroupRows
-    interruption: Interruption
-    journal: RunJournal
-    pieces: Pieces
-    excerpts: Excerpts
-    advance: Callable[[int, int], None]
-    under_way: UnderWay | None = field(default=None, init=False)
-    _unclosed: dict[str, Unclosed] = field(default_factory=dict, init=False)
-    _ready: deque[ShardPlan] = field(default_factory=deque, init=False)
-    _open: int = field(default=0, init=False)
+    with_tables: bool = True
 
-    def make(
-        self,
-        missing: Sequence[ShardPlan],
-        there: Iterable[str],
-        committed: Callable[[ShardPlan, Sidecar, float], None],
-    ) -> None:
-        """Simulate and write shards, and the excerpts of all.
+    def __call__(self, shard: ShardPlan) -> MadeShard:
+        """Make a shard, if it is not there as this maker would make it."""
+        try:
+            self._check_place()
+            with collected("other") as times:
+                made = self._made(shard)
+            return replace(made, cpu_s=times.seconds)
+        except DatasetError as error:
+            return MadeShard(shard.key, error=error)
+        except OSError as error:
+            if error.errno is None or error.errno not in UNWRITABLE:
+                raise
+            return MadeShard(shard.key, error=OSError(error.errno, os.strerror(error.errno)))
 
-        Parameters
-        ----------
-        there : iterable of str
-            Shards that are committed; those without an excerpt get one.
-        committed : callable
-            Called with every shard that is there, its sidecar and the seconds that it took.
+    def _check_place(self) -> None:
+        if not self.storage.exists(CONFIG):
+            raise DatasetError(
+                f"{self.storage.location}: the worker on {platform.node()} does not see the folder of the set, into "
+                "which it has to write; name a folder that all machines of the cluster share, or s3://bucket/set"
+            )
+
+    def _made(self, shard: ShardPlan) -> MadeShard:
+        note, made = "", 0
+        try:
+            with stage("files"):
+                table, failures, files = self._there(shard)
+        except FileNotFoundError:
+            table, failures, files = self._simulated(shard)
+            made = shard.record_count
+        except VerificationError as error:
+            note = str(error)
+            table, failures, files = self._simulated(shard)
+            made = shard.record_count
+        per_state = dict.fromkeys(self.states, 0)
+        for state in table["state"].to_pylist():
+            per_state[state] += 1
+        with stage("files"):
+            tables = self._tables(shard, table) if self.with_tables else {}
+        return MadeShard(shard.key, table.num_rows, per_state, failures, files, made, tables, note)
+
+    def _about(self, shard: ShardPlan, failures: Sequence[RecordFailure], internals: str | None) -> dict[str, object]:
+        return {
+            "shard": shard.key,
+            "identity": self.simulation.columns.identity,
+            "fingerprint": fingerprint(self.environment),
+            "made_by": version_text(self.environment),
+            "earlier": [count for count in self.earlier if count <= shard.specimens[0]],
+            "specimens": list(shard.specimens),
+            "failures": [list(asdict(failure).values()) for failure in failures],
+            "internals": internals,
+        }
+
+    def _simulated(self, shard: ShardPlan) -> tuple[pa.Table, tuple[RecordFailure, ...], dict[str, PromisedFile]]:
+        columns = self.simulation.columns
+        rows, inner, failures = [], [], list[RecordFailure]()
+        for ids in shard.of_specimens:
+            for block in self.simulation.blocks(ids):
+                rows.append(block.rows)
+                failures += block.failures
+                inner += [] if block.internals is None else [block.internals]
+        files: dict[str, PromisedFile] = {}
+        table = pa.Table.from_batches(rows, record_schema(columns))
+        del rows
+        with stage("files"):
+            if columns.quantities:
+                content = packed(pa.Table.from_batches(inner, internals_schema(columns)))
+                self.storage.put(name := internals_name(shard.key), content)
+                files[name] = promised(content)
+            internals = files[internals_name(shard.key)].sha256 if files else None
+            content = packed(table, self._about(shard, failures, internals))
+            self.storage.put(name := data_name(shard.key), content)
+            files[name] = promised(content)
+        return table, tuple(failures), files
+
+    def _there(self, shard: ShardPlan) -> tuple[pa.Table, tuple[RecordFailure, ...], dict[str, PromisedFile]]:
+        """Return what is there of a shard.
+
+        Whoever writes a table again that was read gets its bytes, unless one of them was changed: the checksums of
+        pages leave out their headers and the footer.
+
+        Raises
+        ------
+        FileNotFoundError
+            If nothing is there.
+        VerificationError
+            If it is damaged, or another maker made it, with the reason.
         """
-        with self.journal.driver.during("taking over"):
-            self._delete_sidecars(missing)
-            found = self.pieces.find([shard.key for shard in missing])
-            bare = self.excerpts.missing(there)
-        self.advance(sum(len(chunk.records) for held in found.values() for chunk in held), 0)
-        if missing and isinstance(self.engine, ProcessEngine):
-            with self.journal.driver.during("compiling"):
-                self._compile(self.engine)
-        self._open = len(missing) + len(bare)
-        self.under_way = UnderWay(self.engine.workers)
-        work = self._work()
-        tasks = self.under_way.taken(self._tasks(bare, self._stretches(missing, found, work)))
-        with (
-            self.journal.driver.during("engine"),
-            running(self.engine, work, tasks) as results,
-            self.interruption.drained_by(self._drain),
-        ):
-            for _, answer in self.journal.waiting(results):
-                self._hear(answer, committed)
-                if not self._open:
-                    break
-        self.under_way = None
-        if self.interruption.draining:
-            raise KeyboardInterrupt
-        if self._open:
-            raise EngineError(f"the engine ended before its tasks did: {self._open} shards are not closed")
+        name, columns = data_name(shard.key), self.simulation.columns
+        if not self.storage.exists(name):
+            raise FileNotFoundError(name)
+        content = self.storage.get(name)
+        table = unpacked(content)
+        about = about_of(table)
+        failures = self._failures(about.get("failures"))
+        internals = about.get("internals")
+        wanted = self._about(shard, failures, internals)
+        if about.get("identity") != wanted["identity"]:
+            raise VerificationError("it is of another set")
+        if about.get("fingerprint") != wanted["fingerprint"]:
+            raise VerificationError(f"made by {str(about.get('made_by'))[:100]}")
+        if about != wanted or table.num_rows + len(failures) != shard.record_count:
+            raise VerificationError("it holds other gearboxes")
+        if not _without_about(table.schema).equals(record_schema(columns), check_metadata=True):
+            raise VerificationError("it has other columns")
+        if packed(table) != content:
+            raise VerificationError(f"{name} is damaged")
+        files = {}
+        if columns.quantities:
+            other = internals_name(shard.key)
+            inner = self.storage.get(other) if self.storage.exists(other) else b""
+            if hashlib.sha256(inner).hexdigest() != internals:
+                raise VerificationError(f"{other} is missing or damaged")
+            files[other] = promised(inner)
+        files[name] = promised(content)
+        return table.replace_schema_metadata(schema_metadata(columns)), failures, files
 
-    def records_kept(self, committed: Container[str]) -> int:
-        """Return the number of records in pieces, without those of shards that are committed, by their names."""
-        return sum(one.kept for shard, one in self._unclosed.items() if shard not in committed)
+    def _failures(self, listed: object) -> tuple[RecordFailure, ...]:
+        try:
+            return tuple(RecordFailure(int(i), str(status), str(reason)) for i, status, reason in listed)  # type: ignore[attr-defined]
+        except (TypeError, ValueError) as error:
+            raise VerificationError("it does not say what failed") from error
 
-    def _delete_sidecars(self, missing: Sequence[ShardPlan]) -> None:
-        """Take the sidecars of shards back that cannot be used: from now on one is there where this run made it."""
-        there = set(self.storage.names(SIDECAR_FOLDER))
-        for name in (sidecar_name(shard.key) for shard in missing):
-            if name in there:
-                self.storage.delete(name)
-
-    def _work(self) -> ShardWork:
-        is_parted = isinstance(self.engine, DrainingEngine)
-        return ShardWork(self.simulation, self.pieces, self.excerpts, self.states, self.group_rows, is_parted)
-
-    def _drain(self) -> bool:
-        """Let the workers finish what they are at, where a minute of work would be lost otherwise."""
-        assert self.under_way is not None
-        longest_s = max(self.under_way.lost_s(), default=0.0)
-        if longest_s <= STOP_AT_ONCE_S or not isinstance(self.engine, DrainingEngine):
-            return False
-        self.engine.drain()
-        self.journal.say(
-            f"stopping as soon as the records under way are finished, for which {longest_s:.0f} s were spent; "
-            "Ctrl-C once more stops at once and loses them"
-        )
-        return True
-
-    def _compile(self, engine: ProcessEngine) -> None:
-        """Compile once for all workers, which would compile the same side by side."""
-        parts = self.to_compile()
-        if parts:
-            with running(engine, run_part, parts) as compiled:
-                for _ in compiled:
-                    self.interruption.check()
-
-    def _tasks(self, bare: Sequence[str], stretches: Iterator[ChunkStretch]) -> Iterator[Task | None]:
-        """Yield what is to be done, shards that can be closed first; None where that waits for workers."""
-        yield from (Excerpting(shard) for shard in bare)
-        while self._open:
-            if self._ready:
-                yield Closing(self._ready.popleft())
-            elif (stretch := next(stretches, None)) is not None or not self._ready:
-                yield stretch
-
-    def _stretches(
-        self, missing: Sequence[ShardPlan], found: Mapping[str, Sequence[Chunk]], work: ShardWork
-    ) -> Iterator[ChunkStretch]:
-        """Cut shards into stretches of what no piece holds."""
-        kept = {chunk.records.start: chunk for held in found.values() for chunk in held}
-        left = sum(shard.record_count for shard in missing) - sum(len(chunk.records) for chunk in kept.values())
-        for shard in missing:
-            gaps = list(_gaps(shard_chunks(shard, work.group_rows), kept))
-            pending = sum(len(chunk.records) for gap in gaps for chunk in gap)
-            self._unclosed[shard.key] = Unclosed(shard, pending, shard.record_count - pending, self.journal.seconds)
-            if not gaps:
-                self._ready.append(shard)
-            for gap in gaps:
-                while gap:
-                    chosen = _taken(gap, self._share(left, work))
-                    size = sum(len(chunk.records) for chunk in chosen)
-                    left -= size
-                    yield ChunkStretch(shard, chosen, size == shard.record_count)
-
-    def _share(self, left: int, work: ShardWork) -> int:
-        """Return how many records a stretch may have; a chunk, if it has more, and where parts are not handed in."""
-        if not work.is_parted:
-            return 1
-        return left if self.engine.workers == 1 else left // (STRETCHES_PER_WORKER * self.engine.workers)
-
-    def _hear(
-        self,
-        heard: Answer | Unfinished[Task, Answer] | None,
-        committed: Callable[[ShardPlan, Sidecar, float], None],
-    ) -> None:
-        self.interruption.check()
-        self.storage.check_writing()
-        if heard is None:
-            return
-        assert self.under_way is not None
-        answer = self.under_way.hear(heard)
-        if answer.error is not None:
-            raise answer.error
-        self.journal.add(answer.cpu_s)
-        one = self._unclosed.get(answer.shard)
-        if one is None:  # its excerpt is there
-            self._open -= 1
-            return
-        done = min(answer.records, one.left)  # more were lost from pieces, and made once more
-        one.left, one.kept = one.left - done, one.kept + done
-        self.advance(done, answer.records)
-        self.journal.failed(answer.shard, answer.failures)
-        if answer.sidecar is not None:
-            del self._unclosed[answer.shard]
-            self._open -= 1
-            committed(one.shard, answer.sidecar.without_bulk(*ranges(one.shard)), self.journal.seconds - one.begun_s)
-        elif one.left == 0:
-            self._ready.append(one.shard)
+    def _tables(self, shard: ShardPlan, table: pa.Table) -> dict[str, bytes]:
+        schemas = table_schemas(self.simulation.columns)
+        owners = zip(table["specimen_id"].to_pylist(), table["record_id"].to_pylist(), strict=True)
+        records = ([record for _, record in own] for _, own in groupby(owners, key=itemgetter(0)))
+        rows = {DAMAGE: [row for of_specimen in records for row in self.damage_rows(of_specimen)]}
+        if self.simulation.columns.lives:
+            rows |= {life_name(name): [] for name in LIFE_TABLES}
+            for specimen in shard.specimens:
+                for name, found in self.life_rows(specimen).items():
+                    rows[life_name(name)] += [{**row, "split": shard.split} for row in found]
+        made = {name: pa.RecordBatch.from_pylist(own, schema=schemas[name]) for name, own in rows.items()}
+        labels = table.select(schemas[LABELS].names).cast(schemas[LABELS]).combine_chunks()
+        return {name: _stream(batch) for name, batch in made.items()} | {LABELS: _stream(labels)}
 
 
-def _taken(gap: deque[Chunk], most: int) -> tuple[Chunk, ...]:
-    """Take chunks from the beginning of a gap: one, and more while they have no more than so many records."""
-    chosen = [gap.popleft()]
-    size = len(chosen[0].records)
-    while gap and (size := size + len(gap[0].records)) <= most:
-        chosen.append(gap.popleft())
-    return tuple(chosen)
+def table_schemas(columns: SetColumns) -> dict[str, pa.Schema]:
+    """Return name -> schema of the small tables of a set; those of lives only if it has some."""
+    lives = {life_name(name): _life_schema(columns, name) for name in (LIFE_TABLES if columns.lives else ())}
+    return {LABELS: label_schema(columns), DAMAGE: damage_schema(columns), **lives}
 
 
-def _gaps(planned: Iterable[Chunk], kept: Mapping[int, Chunk]) -> Iterator[deque[Chunk]]:
-    """Yield chunks that follow each other, of what is missing between those kept, which come by their first record."""
-    gap: deque[Chunk] = deque()
-    for chunk in planned:
-        start, stop = chunk.records.start, chunk.records.stop
-        while start < stop:
-            found = kept.get(start)
-            if found is not None and found.records.stop <= stop:
-                if gap:
-                    yield gap
-                gap, start = deque(), found.records.stop
-            else:
-                end = min((first for first in kept if start < first < stop), default=stop)
-                gap.append(Chunk(chunk.shard, range(start, end)))
-                start = end
-    if gap:
-        yield gap
+def _life_schema(columns: SetColumns, table: str) -> pa.Schema:
+    fields = [column.field().with_nullable(column.name in NULLABLE) for column in LIFE_TABLES[table]]
+    return pa.schema(fields, metadata=schema_metadata(columns))
+
+
+def _without_about(schema: pa.Schema) -> pa.Schema:
+    return schema.with_metadata({key: value for key, value in (schema.metadata or {}).items() if key != ABOUT})
+
+
+def _stream(rows: pa.RecordBatch | pa.Table) -> bytes:
+    sink = pa.BufferOutputStream()
+    with pa.ipc.new_stream(sink, rows.schema, options=pa.ipc.IpcWriteOptions(compression="zstd")) as writer:
+        writer.write(rows)
+    return bytes(sink.getvalue().to_pybytes())
+
+
+def streamed(content: bytes) -> Iterator[pa.RecordBatch]:
+    """Yield the rows of a small table."""
+    with pa.ipc.open_stream(pa.py_buffer(content)) as stream:
+        yield from stream

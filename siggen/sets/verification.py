@@ -2,49 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import hashlib
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from random import Random
 from shlex import quote
 
+import pyarrow as pa
+
 from siggen.columns.versions import SIMULATION_VERSION
-from siggen.dataset.chunk import Chunk
 from siggen.dataset.environment import environment, fingerprint, version_text
-from siggen.dataset.gate import manifest_facts, sidecar_facts
-from siggen.dataset.inventory import Inventory, PromisedFile
-from siggen.dataset.manifest import (
-    BLIND,
-    CONFIG,
-    DAMAGE_FOLDER,
-    INJECTED,
-    LIFE_FOLDER,
-    MANIFEST,
-    METADATA_FOLDER,
-    PHYSICS,
-    RUN,
-    read_manifest,
-)
-from siggen.dataset.object_name import CHECKSUMS, DATA_FOLDER, INDEX, INTERNALS_FOLDER, SIDECAR_FOLDER, sidecar_name
+from siggen.dataset.gate import manifest_facts
+from siggen.dataset.inventory import Inventory
+from siggen.dataset.manifest import BLIND, CONFIG, INJECTED, MANIFEST, PHYSICS, read_manifest
+from siggen.dataset.object_name import DATA_FOLDER, INTERNALS_FOLDER, LABELS, LIFE_FOLDER
 from siggen.dataset.reading import Dataset
 from siggen.dataset.seal import unsealed
-from siggen.dataset.shard_index import ShardIndex, promised_files
-from siggen.dataset.storage import Storage, sha256
+from siggen.dataset.shard import packed, unpacked
+from siggen.dataset.storage import Storage
 from siggen.dataset.storage_at import storage_at
-from siggen.engines.protocol import Engine
-from siggen.engines.registry import engine_of, running
 from siggen.errors import ConfigError, DatasetError, VerificationError, counted
 from siggen.gearbox.design import SetDesign, stored_design
 from siggen.sets import physics as contents
 from siggen.sets.record_comparison import result_difference
+from siggen.workers.choice import workers_of
+from siggen.workers.tasks import results
 
-OWN_FOLDERS = (DATA_FOLDER, INTERNALS_FOLDER, METADATA_FOLDER, DAMAGE_FOLDER, LIFE_FOLDER, SIDECAR_FOLDER)
+OWN_FOLDERS = (DATA_FOLDER, INTERNALS_FOLDER, LIFE_FOLDER)
 
 EXACT = "bit for bit"
 CLOSE = "within one step of the converter"
 STRANGER = "not part of the set"
 HASHES_ALONE = "hashes checked"
 """How the comparison begins of a set whose records another version of the simulation made."""
+
+
+class OneRecord(tuple[int]):
+    """The id of a record that is simulated by itself; says so."""
+
+    __slots__ = ()
+
+    def __str__(self) -> str:
+        return f"record {self[0]}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +72,7 @@ class Verification:
     mismatches
         Empty for a set that is what it promises to be.
     made_by
-        The versions that made the shards, each with its fingerprint.
+        The version that made the shards, with its fingerprint.
     here
         The version that compared.
     """
@@ -81,12 +83,12 @@ class Verification:
     records: tuple[int, ...]
     comparison: str
     mismatches: tuple[Mismatch, ...]
-    made_by: tuple[str, ...] = ()
+    made_by: str = ""
     here: str = ""
 
 
 def verify(
-    path: Path | str, sample: int = 0, *, workers: int | None = None, engine: Engine | str | None = None
+    path: Path | str, sample: int = 0, *, workers: int | None = None, executor: Executor | str | None = None
 ) -> Verification:
     """Compare a finished set with its manifest, and `sample` of its records with a new simulation.
 
@@ -101,7 +103,7 @@ def verify(
         Number of records; which ones follows from the manifest, so a verification can be repeated.
     workers : int, optional
         Worker processes; by default none, since a few records cost less than the start of one.
-    engine : Engine or str, optional
+    executor : Executor or str, optional
         As for `generate`.
 
     Raises
@@ -117,12 +119,11 @@ def verify(
     except DatasetError as error:
         raise DatasetError(f"{storage.location}/{error}") from error
     except VerificationError as error:
-        return Verification(storage.location, 1, storage.size(MANIFEST), (), "none", (Mismatch(MANIFEST, str(error)),))
-    mismatches = [*_file_mismatches(storage, manifest.files), *_run(storage)]
-    files, shard_mismatches = _with_shards(storage, manifest, mismatches)
-    mismatches += shard_mismatches
+        size = storage.sizes().get(MANIFEST, 0)
+        return Verification(storage.location, 1, size, (), "none", (Mismatch(MANIFEST, str(error)),))
+    mismatches = [*_file_mismatches(storage, manifest), *_strangers(storage, manifest), *_physics(storage)]
     if not mismatches:
-        mismatches += _sidecar_mismatches(storage, manifest)
+        mismatches += _other_labels(storage, manifest)
     records: tuple[int, ...] = ()
     comparison = "none asked for"
     if sample and mismatches:
@@ -130,12 +131,13 @@ def verify(
     elif sample and (reason := why_not_again(manifest, sample)):
         comparison = reason
     elif sample:
-        records, comparison, different = _simulate_again(storage, sample, engine, workers)
+        records, comparison, different = _simulate_again(storage, sample, executor, workers)
         mismatches += different
-    total = sum(facts.bytes for facts in files.values())
-    count = len(files) + 2
-    versions = tuple(dict.fromkeys(map(version_text, manifest.environments))), version_text(environment())
-    return Verification(storage.location, count, total, records, comparison, tuple(mismatches), *versions)
+    total = sum(facts.bytes for facts in manifest.files.values())
+    versions = version_text(manifest.environment), version_text(environment())
+    return Verification(
+        storage.location, len(manifest.files) + 1, total, records, comparison, tuple(mismatches), *versions
+    )
 
 
 def why_not_again(manifest: Inventory, sample: int) -> str:
@@ -151,9 +153,9 @@ def why_not_again(manifest: Inventory, sample: int) -> str:
     return f"{head}made by simulation version {made_by}, this is {SIMULATION_VERSION}"
 
 
-def _file_mismatches(storage: Storage, files: Mapping[str, PromisedFile]) -> Iterator[Mismatch]:
+def _file_mismatches(storage: Storage, manifest: Inventory) -> Iterator[Mismatch]:
     sizes = storage.sizes()
-    for name, facts in sorted(files.items()):
+    for name, facts in sorted(manifest.files.items()):
         if name not in sizes:
             yield Mismatch(name, "missing")
         elif sizes[name] != facts.bytes:
@@ -162,73 +164,54 @@ def _file_mismatches(storage: Storage, files: Mapping[str, PromisedFile]) -> Ite
             yield Mismatch(name, problem)
 
 
-def _with_shards(
-    storage: Storage, manifest: Inventory, found: Sequence[Mismatch]
-) -> tuple[Mapping[str, PromisedFile], list[Mismatch]]:
-    """Return all files that are promised, and what is wrong with those of the shards.
-
-    Where the table that promises them is damaged, they are neither compared nor called strangers.
-    """
-    files = dict(manifest.files)
-    if any(one.what == CHECKSUMS for one in found):
-        return files, []
-    try:
-        promised = dict(promised_files(storage, files[CHECKSUMS]))
-    except DatasetError as error:
-        return files, [Mismatch(CHECKSUMS, str(error))]
-    files |= promised
-    return files, [*_file_mismatches(storage, promised), *_strangers(storage, files)]
-
-
-def _sidecar_mismatches(storage: Storage, manifest: Inventory) -> Iterator[Mismatch]:
-    """Yield the sidecars that say something else than the index, which a stranger may have sealed around them."""
-    try:
-        index = ShardIndex(storage, manifest)
-    except DatasetError as error:
-        yield Mismatch(INDEX, str(error))
-        return
-    for shard in index.shards():
-        name = sidecar_name(shard.shard)
-        try:
-            facts = sidecar_facts(name, storage.get(name))
-        except (VerificationError, DatasetError) as error:
-            yield Mismatch(name, str(error))
-            continue
-        tables = {
-            table.name: PromisedFile(bytes=table.bytes, sha256=table.sha256, crc32_per_64_kib=table.crc32_per_64_kib)
-            for table in (facts.data, facts.internals)
-            if table
-        }
-        promised = {table: index.promised(table) for table in shard.tables}
-        listed = (shard.specimens, shard.records, shard.rows, manifest.environments[shard.environment])
-        if tables != promised or listed != (facts.specimens, facts.records, facts.data.rows, facts.environment):
-            yield Mismatch(name, "says something else than the index")
-
-
 def _content_problem(storage: Storage, name: str, promised: str) -> str:
     try:
-        return "" if sha256(storage, name) == promised else "content differs (SHA-256)"
+        same = hashlib.sha256(storage.get(name)).hexdigest() == promised
     except DatasetError as error:  # a link out of the set, or no regular file
         return str(error)
+    return "" if same else "content differs (SHA-256)"
 
 
-def _strangers(storage: Storage, files: Mapping[str, object]) -> Iterator[Mismatch]:
+def _strangers(storage: Storage, manifest: Inventory) -> Iterator[Mismatch]:
     for folder in OWN_FOLDERS:
-        yield from (Mismatch(name, STRANGER) for name in storage.names(folder) if name not in files)
+        yield from (Mismatch(name, STRANGER) for name in storage.names(folder) if name not in manifest.files)
 
 
-def _run(storage: Storage) -> Iterator[Mismatch]:
-    """Check run.json and physics.json by their own digests; they may be left out when a set is published."""
-    for name in (RUN, PHYSICS):
-        if storage.exists(name):
-            try:
-                unsealed(name, storage.get(name))
-            except VerificationError as error:
-                yield Mismatch(name, str(error))
+def _physics(storage: Storage) -> Iterator[Mismatch]:
+    """Check physics.json by its own digest; it may be left out when a set is published."""
+    if storage.exists(PHYSICS):
+        try:
+            unsealed(PHYSICS, storage.get(PHYSICS))
+        except VerificationError as error:
+            yield Mismatch(PHYSICS, str(error))
+
+
+def _other_labels(storage: Storage, manifest: Inventory) -> Iterator[Mismatch]:
+    """Yield the shards that say something else of their records than the labels, which a stranger may have sealed."""
+    try:
+        labels = Dataset(storage).labels()
+    except DatasetError as error:
+        yield Mismatch(LABELS, str(error))
+        return
+    first = 0
+    for shard in manifest.shards:
+        try:
+            own = unpacked(storage.get(shard.file), labels.column_names)
+        except VerificationError as error:
+            yield Mismatch(shard.file, str(error))
+            continue
+        if _bytes(own) != _bytes(labels.slice(first, shard.rows)):
+            yield Mismatch(shard.file, f"says something else of its records than {LABELS}")
+        first += shard.rows
+
+
+def _bytes(rows: pa.Table) -> bytes:
+    """Return rows as bytes, by which NaN equals itself."""
+    return packed(rows.replace_schema_metadata(None))
 
 
 def _simulate_again(
-    storage: Storage, sample: int, engine: Engine | str | None, workers: int | None
+    storage: Storage, sample: int, executor: Executor | str | None, workers: int | None
 ) -> tuple[tuple[int, ...], str, list[Mismatch]]:
     dataset = Dataset(storage)
     try:
@@ -237,20 +220,19 @@ def _simulate_again(
         why = f"this version of siggen reads the configuration otherwise ({error})"
         return (), f"none: {why}", [Mismatch("records", f"cannot be simulated again: {why}")]
     ids = _sample(dataset, sample)
-    here = fingerprint(environment())
-    exact = {record_id: fingerprint(_environment(dataset, record_id)) == here for record_id in ids}
-    tasks = [Chunk("again", range(record_id, record_id + 1)) for record_id in ids]
+    exact = fingerprint(dataset.inventory.environment) == fingerprint(environment())
+    tasks = [OneRecord((record_id,)) for record_id in ids]
     mismatches = []
     function = contents.physics().simulation(design)
-    chosen = engine_of(engine, 0 if engine is None and workers is None else workers)
-    with running(chosen, function, tasks) as results:
-        for index, result in results:
+    chosen = workers_of(executor, 0 if executor is None and workers is None else workers)
+    with closing(results(chosen, function, tasks)) as answers:
+        for index, result in answers:
             record_id = ids[index]
             stored = dataset.record(record_id)
             internals = dataset.record_internals(record_id) if dataset.internal_columns else None
-            problem = result_difference(design, stored, internals, result, exact=exact[record_id])
+            problem = result_difference(design, stored, internals, result, exact=exact)
             mismatches += [Mismatch(f"record {record_id}", problem)] if problem else []
-    comparison = EXACT if all(exact.values()) else f"{CLOSE} (made with other versions or another CPU family)"
+    comparison = EXACT if exact else f"{CLOSE} (made with other versions or another CPU family)"
     return tuple(ids), comparison, sorted(mismatches, key=lambda mismatch: mismatch.what)
 
 
@@ -273,15 +255,10 @@ def _sample(dataset: Dataset, count: int) -> list[int]:
     return sorted(Random(dataset.inventory.identity).sample(ids, min(count, len(ids))))
 
 
-def _environment(dataset: Dataset, record_id: int) -> Mapping[str, str]:
-    owner = dataset.index.owner(record_id)
-    return {} if owner is None else dataset.inventory.environments[owner.environment]
-
-
 def problem_lines(found: Verification) -> list[str]:
     """Return one line per mismatch, and what repairs the set."""
     lines = [f"{one.what}: {one.problem}" for one in found.mismatches]
-    spare = [one.what for one in found.mismatches if one.problem == STRANGER or one.what in (RUN, PHYSICS)]
+    spare = [one.what for one in found.mismatches if one.problem == STRANGER or one.what == PHYSICS]
     damaged = [one.what for one in found.mismatches if one.what not in spare and not one.what.startswith("record")]
     if spare:
         lines.append(f"to repair it: remove {', '.join(spare)}")

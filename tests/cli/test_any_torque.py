@@ -26,7 +26,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     )
     file = folder / "torques.yaml"
     file.write_text(yaml.safe_dump(raw, sort_keys=False), encoding="utf-8")
-    run("generate", str(file), "--out", str(folder / "set"), "--engine", "serial")
+    run("generate", str(file), "--out", str(folder / "set"), "--executor", "serial")
     return file, folder / "set"
 
 
@@ -38,7 +38,7 @@ def run(*arguments: str) -> str:
 
 @pytest.mark.slow
 def test_records_of_any_torque_are_made_and_labelled(made: tuple[Path, Path]):
-    rows = [row for file in (made[1] / "metadata").iterdir() for row in pq.read_table(file).to_pylist()]
+    rows = pq.read_table(made[1] / "labels.parquet").to_pylist()
     assert [row["status"] for row in rows] == ["ok"] * 8
     damaged = [row for row in rows if row["state"] == "slight"]
     losses = {row["torque_nm"]: row["mesh_stiffness_loss_as_simulated"] for row in damaged}

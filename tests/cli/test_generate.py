@@ -32,9 +32,11 @@ def simulation(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     """Let the command generate with a stand-in for the physics, in this process."""
     chosen = SimpleNamespace(function=simulate)
 
-    def stand_in(loaded, out, workers, progress, *, engine, events, allowed_loss):
-        assert (workers in (None, 1), engine) == (True, None)
-        return write_fake_set(out, loaded, simulation=chosen.function, events=events, allowed_loss=allowed_loss)
+    def stand_in(loaded, out, workers, progress, *, part, executor, address, events, allowed_loss):
+        assert (workers in (None, 1), executor, address) == (True, None, None)
+        return write_fake_set(
+            out, loaded, part=part, simulation=chosen.function, events=events, allowed_loss=allowed_loss
+        )
 
     monkeypatch.setattr(siggen.sets.generation, "generate", stand_in)
     return chosen

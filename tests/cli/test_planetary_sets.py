@@ -36,7 +36,7 @@ def written(folder: Path, **changes: Any) -> str:
 
 
 def generated(folder: Path, **changes: Any) -> Path:
-    done = run("generate", written(folder, **changes), "--out", str(folder / "set"), "--engine", "serial")
+    done = run("generate", written(folder, **changes), "--out", str(folder / "set"), "--executor", "serial")
     assert done.returncode == 0, done.stdout + done.stderr
     return folder / "set"
 

@@ -42,13 +42,15 @@ def written(folder: Path, **changes: Any) -> str:
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("stages")
     file = written(folder, specimens=1, fs_hz=12_800.0, duration_s=0.1, sensors=by_name(SENSORS))
-    done = run("generate", file, "--out", str(folder / "set"), "--engine", "serial")
+    done = run("generate", file, "--out", str(folder / "set"), "--executor", "serial")
     assert done.returncode == 0, done.stdout + done.stderr
     return folder / "set"
 
 
 def rows(made: Path, table: str) -> list[dict[str, Any]]:
-    return [row for file in sorted((made / table).iterdir()) for row in pq.read_table(file).to_pylist()]
+    """Return the rows of a table of a set: data, labels or damage."""
+    files = sorted((made / table).iterdir()) if table == "data" else [made / f"{table}.parquet"]
+    return [row for file in files for row in pq.read_table(file).to_pylist()]
 
 
 HOIST = """
@@ -105,7 +107,7 @@ def test_channels_at_the_third_shaft_are_called_by_quantity_sensor_axis_and_unit
 
 
 def test_labels_name_the_stage_and_its_frequencies(made: Path) -> None:
-    healthy, severe = sorted(rows(made, "metadata"), key=lambda row: row["record_id"])
+    healthy, severe = sorted(rows(made, "labels"), key=lambda row: row["record_id"])
     assert severe["status"] == healthy["status"] == "ok"
     assert (healthy["faulty_gear"], severe["faulty_gear"]) == ("none", "slow_pinion")
     assert severe["faulty_teeth_pinion"] == []
@@ -120,7 +122,7 @@ def test_labels_name_the_stage_and_its_frequencies(made: Path) -> None:
 def test_the_table_of_damage_names_gear_and_stage(made: Path) -> None:
     (row,) = rows(made, "damage")
     assert row["gear"] == "slow_pinion"
-    (severe,) = (row for row in rows(made, "metadata") if row["state"] == "severe")
+    (severe,) = (row for row in rows(made, "labels") if row["state"] == "severe")
     assert [row["tooth"]] == severe["faulty_teeth_slow_pinion"]
 
 
@@ -208,9 +210,9 @@ def test_modes_are_those_of_all_shafts_and_call_a_machines_gears_by_name(tmp_pat
 @pytest.mark.slow
 def test_the_preset_of_two_stages_is_generated_and_verified(tmp_path: Path) -> None:
     little = ("--set", "specimens=1", "--set", "duration_s=0.1")
-    done = run("generate", "two_stage", *little, "--out", str(tmp_path / "set"), "--engine", "serial")
+    done = run("generate", "two_stage", *little, "--out", str(tmp_path / "set"), "--executor", "serial")
     assert done.returncode == 0, done.stderr
-    states = {row["state"]: row["faulty_gear"] for row in rows(tmp_path / "set", "metadata")}
+    states = {row["state"]: row["faulty_gear"] for row in rows(tmp_path / "set", "labels")}
     expected = {"slight": "c", "severe": "c", "fast_severe": "a"}
     assert states == {"healthy": "none", **expected, "sham": "none"}
     done = run("verify", str(tmp_path / "set"), "--physics", "1")

@@ -8,6 +8,7 @@ import signal
 import sys
 import time
 from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
@@ -94,7 +95,7 @@ def fake_record(config: SetDesign, planned: PlannedRecord) -> SimulatedRecord:
         "gear_shaft_hz": 30.0 * 18 / 47,
         "mesh_hz": 540.0,
         "mesh_stiffness_loss_as_simulated": 0.008 * pits,
-        "oil_temperature_c": 50.0,
+        **({} if config.config.dynamics.mesh.law == "linear" else {"oil_temperature_c": 50.0}),
         "start_angle_rad": float(rng.random()),
         **(STEPPED if config.config.dynamics.method == "exponential" else {}),
     }
@@ -225,6 +226,11 @@ def _pits(config: SetDesign, record_id: int) -> list[dict[str, object]]:
     return [{**ellipse, "record_id": record_id, "face_mm": 8.0 + pit} for pit in range(count)]
 
 
+def small_shards(size: int = 12_000) -> Any:
+    """Give every gearbox of the stand-in a shard of its own, unless told otherwise."""
+    return patch.object(plan, "SHARD_BYTES", size)
+
+
 @contextmanager
 def fake_physics(simulation: Any = simulate) -> Iterator[None]:
     """Put the stand-in where `generate` and `verify` look for the physics; workers receive its functions by name."""
@@ -238,16 +244,16 @@ def write_fake_set(
     config: SetDesign | None = None,
     *,
     workers: int = 0,
+    part: tuple[int, int] | None = None,
     simulation: Any = simulate,
-    engine: str | None = None,
+    executor: Executor | str | None = None,
     events: Events | None = None,
     allowed_loss: float = 1.0,
 ) -> Generation:
     """Generate a set with the stand-in, in this process unless workers are asked for; one gearbox per shard."""
-    # row groups of 2: several chunks per shard
-    with fake_physics(simulation), patch.multiple(plan, SHARD_BYTES=12_000, GROUP_CHANNEL_BYTES=4_096):
+    with fake_physics(simulation), small_shards():
         told = {"events": events, "allowed_loss": allowed_loss}
-        return generate(config or fake_config(), path, workers, engine=engine, **told)  # type: ignore[arg-type]
+        return generate(config or fake_config(), path, workers, part=part, executor=executor, **told)  # type: ignore[arg-type]
 
 
 @cache
@@ -269,14 +275,9 @@ def verify_fake_set(path: Path, sample: int, *, workers: int = 0, simulation: An
 
 
 FAKE_FILES = sorted(
-    ["README.md", "checksums.parquet", "config.yaml", "index.parquet", "manifest.json", "run.json"]
-    + [f"{folder}/{split}.parquet" for folder in ("metadata", "damage") for split in ("train", "validation", "test")]
+    ["README.md", "config.yaml", "damage.parquet", "labels.parquet", "manifest.json"]
     + [
         f"data/{shard}.parquet"
-        for shard in ("train-00000", "train-00001", "train-00002", "validation-00000", "test-00000")
-    ]
-    + [
-        f"shards/{shard}.json"
         for shard in ("train-00000", "train-00001", "train-00002", "validation-00000", "test-00000")
     ]
 )
@@ -284,18 +285,18 @@ FAKE_FILES = sorted(
 
 
 def file_bytes(path: Path) -> dict[str, bytes]:
-    """Return every file of a set that must not depend on how it was made."""
-    files = sorted(p for p in path.rglob("*") if p.is_file() and p.name != "run.json")
+    """Return every file of a set."""
+    files = sorted(p for p in path.rglob("*") if p.is_file())
     return {p.relative_to(path).as_posix(): p.read_bytes() for p in files}
 
 
 if __name__ == "__main__":
-    # python -m tests.dataset.fake_set FOLDER WORKERS [ENGINE]: a process of its own that a test can kill
+    # python -m tests.dataset.fake_set FOLDER WORKERS [EXECUTOR]: a process of its own that a test can kill
     from siggen.errors import SiggenError
 
     try:
         chosen = sys.argv[3] if len(sys.argv) > 3 else None
-        write_fake_set(Path(sys.argv[1]), workers=int(sys.argv[2]), simulation=simulate_slowly, engine=chosen)
+        write_fake_set(Path(sys.argv[1]), workers=int(sys.argv[2]), simulation=simulate_slowly, executor=chosen)
     except SiggenError as error:
         sys.stderr.write(f"{error}\n")
         sys.exit(error.exit_code)

@@ -20,7 +20,6 @@ BUCKET = "sets"
 @contextmanager
 def s3_server(monkeypatch: pytest.MonkeyPatch, port: int = 0) -> Iterator[str]:
     """Serve one empty bucket; give the address, which is in the environment with credentials."""
-    pytest.importorskip("boto3")
     from werkzeug.serving import BaseWSGIServer
 
     server_module = pytest.importorskip("moto.server")
@@ -36,12 +35,9 @@ def s3_server(monkeypatch: pytest.MonkeyPatch, port: int = 0) -> Iterator[str]:
     facts |= {"ENDPOINT_URL": f"http://{host}:{found}", "EC2_METADATA_DISABLED": "true", "MAX_ATTEMPTS": "2"}
     for name, value in facts.items():
         monkeypatch.setenv(f"AWS_{name}", value)
-    import boto3
-
     # stores of this process outlive a server
-    urllib.request.urlopen(urllib.request.Request(f"{facts['ENDPOINT_URL']}/moto-api/reset", method="POST")).close()
-    client = boto3.session.Session().client("s3")
-    client.create_bucket(Bucket=BUCKET)
+    for path, method in (("moto-api/reset", "POST"), (BUCKET, "PUT")):
+        urllib.request.urlopen(urllib.request.Request(f"{facts['ENDPOINT_URL']}/{path}", method=method)).close()
     try:
         yield facts["ENDPOINT_URL"]
     finally:
@@ -49,9 +45,9 @@ def s3_server(monkeypatch: pytest.MonkeyPatch, port: int = 0) -> Iterator[str]:
 
 
 def object_bytes(place: PurePath | str) -> dict[str, bytes]:
-    """Return every object of a set that must not depend on how it was made; as `file_bytes` of a folder."""
+    """Return every object of a set, as `file_bytes` of a folder."""
     storage = storage_at(place)
-    return {name: storage.get(name) for name in storage.names() if name != "run.json"}
+    return {name: storage.get(name) for name in storage.names()}
 
 
 def digests(files: dict[str, bytes]) -> dict[str, str]:

@@ -33,10 +33,10 @@ def test_the_front_matter_names_every_parquet_file_exactly_once(folder: Path) ->
     assert list(views) == ["signals", "labels", "damage"]
     assert [view["config_name"] for view in facts["configs"] if view.get("default")] == ["signals"]
     matched = [path for files in views.values() for file in files for path in folder.glob(file["path"])]
-    assert sorted(matched) == sorted(folder.glob("*/*.parquet"))
-    for files in views.values():
-        assert [file["split"] for file in files] == ["train", "validation", "test"]
-        assert all(path.name.startswith(file["split"]) for file in files for path in folder.glob(file["path"]))
+    assert sorted(matched) == sorted(folder.rglob("*.parquet"))
+    assert [file["split"] for file in views["signals"]] == ["train", "validation", "test"]
+    assert all(path.name.startswith(file["split"]) for file in views["signals"] for path in folder.glob(file["path"]))
+    assert [file["split"] for view in ("labels", "damage") for file in views[view]] == ["records"] * 2
     assert facts["size_categories"] == ["n<1K"]
     assert "license" not in facts  # which licence, only the authors can say
     assert facts["pretty_name"]
@@ -45,7 +45,7 @@ def test_the_front_matter_names_every_parquet_file_exactly_once(folder: Path) ->
 def test_splits_without_gearboxes_are_not_promised(tmp_path: Path) -> None:
     write_fake_set(tmp_path, fake_config(specimens=1, splits={"train": 20, "validation": 0, "test": 0}))
     files = [file["split"] for view in front_matter(tmp_path)["configs"] for file in view["data_files"]]
-    assert files == ["train"] * 3
+    assert files == ["train", "records", "records"]
 
 
 def test_every_column_is_explained_with_its_unit(folder: Path) -> None:
@@ -82,9 +82,11 @@ def test_the_loading_example_of_the_card_runs(folder: Path, monkeypatch: pytest.
     text = (folder / "README.md").read_text().split("```python\n")[1].split("```")[0]
     monkeypatch.chdir(folder)
     scope: dict = {}
-    exec("import numpy as np\n" + text[text.index("import pyarrow") :], scope)
+    exec("import numpy as np\n" + text[text.index("import pyarrow") : text.index("import duckdb")], scope)
+    exec(text[text.index("import siggen") :], scope)
     assert scope["signals"].shape[1] == 512
     assert scope["record"]["record_id"] == 0
+    assert scope["values"].shape == (18, 512)
 
 
 def shipped(name: str, *overrides: str) -> SetDesign:

@@ -6,14 +6,18 @@ from pathlib import Path
 
 import pytest
 
-from siggen.dataset.folder import is_finished
+from siggen.dataset.folder import content_of
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError
 from siggen.file_writing import LEFTOVER_SUFFIX
-from siggen.gearbox.design import stored_design
+from siggen.gearbox.design import SetDesign, stored_design
 from tests.dataset.fake_set import copy_fake_set, fake_config, file_bytes, write_fake_set
 
 CONFIG = fake_config()
+
+
+def is_finished(storage: LocalFolder, design: SetDesign) -> bool:
+    return content_of(storage, design).finished is not None
 
 
 def test_config_yaml_is_the_same_configuration_again() -> None:
@@ -59,9 +63,14 @@ def test_another_set_is_refused_with_what_differs(tmp_path: Path) -> None:
     assert file_bytes(tmp_path) == before
 
 
-def test_more_specimens_in_place_are_refused_with_the_way_out(tmp_path: Path) -> None:
+def test_fewer_gearboxes_in_place_and_another_number_of_a_begun_set_are_refused(tmp_path: Path) -> None:
     copy_fake_set(tmp_path)
-    with pytest.raises(DatasetError, match=r"with 5 specimens, asked for are 7; `siggen extend \S+ --specimens 7`"):
+    before = file_bytes(tmp_path)
+    with pytest.raises(DatasetError, match=r"with 5 gearboxes, finished; asked for are 3: .* fewer need a new folder"):
+        write_fake_set(tmp_path, fake_config(specimens=3))
+    assert file_bytes(tmp_path) == before
+    (tmp_path / "manifest.json").unlink()
+    with pytest.raises(DatasetError, match=r"with 5 gearboxes, begun and not finished; asked for are 7"):
         write_fake_set(tmp_path, fake_config(specimens=7))
 
 

@@ -17,7 +17,7 @@ import pyarrow.compute as pc
 import pytest
 
 from siggen.columns.damage import DAMAGE_COLUMNS
-from siggen.dataset.reading import RowGroup
+from siggen.dataset.inventory import ListedShard
 from tests.diagnostics.column_roles import ListedRoles
 from tests.shared import shared
 
@@ -110,12 +110,15 @@ class MemoryDataset(ListedRoles):
     ) -> Iterator[pa.RecordBatch]:
         yield from self.labels(split, columns).combine_chunks().to_batches(max_chunksize=batch_rows)
 
-    def row_groups(self, split: str | None = None) -> tuple[RowGroup, ...]:
+    def shards(self, split: str) -> tuple[ListedShard, ...]:
         rows = self.labels(split, ["record_id"]).num_rows
-        return tuple(RowGroup(split or "", k, min(ROWS, rows - k * ROWS)) for k in range(-(-rows // ROWS)))
+        return tuple(
+            ListedShard(shard=f"{split}-{k:05d}", rows=min(ROWS, rows - k * ROWS)) for k in range(-(-rows // ROWS))
+        )
 
-    def row_group(self, group: RowGroup, columns: Sequence[str] | None = None) -> pa.RecordBatch:
-        part = self.labels(group.file or None, columns).slice(group.number * ROWS, group.rows)
+    def shard_rows(self, shard: ListedShard, columns: Sequence[str] | None = None) -> pa.RecordBatch:
+        number = int(shard.shard.rpartition("-")[2])
+        part = self.labels(shard.split, columns).slice(number * ROWS, shard.rows)
         return part.combine_chunks().to_batches()[0]
 
     def record(self, record_id: int) -> dict[str, Any]:

@@ -20,10 +20,10 @@ REFUSED, SILENT = "refused in words", "read as data"
 SET_FILES: dict[str, tuple[tuple[str, ...], Callable[[Dataset], object]]] = {
     "signals": (("data/*.parquet",), lambda dataset: list(dataset.records())),
     "internal quantities": (("internals/*.parquet",), lambda dataset: list(dataset.internals())),
-    "labels": (("metadata/*.parquet",), lambda dataset: dataset.labels()),
-    "damage": (("damage/*.parquet",), lambda dataset: dataset.damage()),
-    "manifest, configuration, sidecars": (
-        ("manifest.json", "config.yaml", "shards/*.json"),
+    "labels": (("labels.parquet",), lambda dataset: dataset.labels()),
+    "damage": (("damage.parquet",), lambda dataset: dataset.damage()),
+    "manifest, configuration": (
+        ("manifest.json", "config.yaml"),
         lambda dataset: list(dataset.records()),
     ),
 }

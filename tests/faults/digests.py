@@ -11,7 +11,7 @@ from pathlib import Path
 from benchmarks.row import Row
 from siggen.dataset.storage import LocalFolder
 from siggen.dataset.storage_at import storage_at
-from tests.faults.kills import PART_AND_MERGE, start, steps
+from tests.faults.kills import PARTS_AND_END, start, steps
 from tests.faults.moto_store import BUCKET, moto_store
 from tests.faults.set_files import committed_problems, digest, set_files
 from tests.faults.victim_run import SPECIMENS
@@ -37,16 +37,16 @@ def _row(what: str, files: Mapping[str, bytes], reference: Mapping[str, bytes]) 
 
 
 def _made(folder: Path, quick: bool) -> Iterator[tuple[str, dict[str, bytes]]]:
-    ways = {FIRST: ["--workers", "1"], "2 processes": ["--workers", "2"], "serial": ["--engine", "serial"]}
-    ways |= {} if quick else {name: ["--engine", name] for name in _clusters()}
+    ways = {FIRST: ["--workers", "1"], "2 processes": ["--workers", "2"], "serial": ["--executor", "serial"]}
+    ways |= {} if quick else {name: ["--executor", name] for name in _clusters()}
     for number, (what, options) in enumerate(ways.items()):
         place = folder / str(number)
         _run(["generate", str(place), *options])
         yield what, set_files(LocalFolder(place))
-    for step in steps(PART_AND_MERGE, folder / "merged"):
+    for step in steps(PARTS_AND_END, folder / "parts"):
         _run(step)
-    yield "3 parts, merged", set_files(LocalFolder(folder / "merged"))
-    if importlib.util.find_spec("boto3") and importlib.util.find_spec("moto"):
+    yield "3 parts", set_files(LocalFolder(folder / "parts"))
+    if importlib.util.find_spec("moto"):
         with moto_store():
             _run(["generate", f"s3://{BUCKET}/digest"])
             yield "2 processes, s3://", set_files(storage_at(f"s3://{BUCKET}/digest"))
@@ -56,9 +56,9 @@ def _extended(place: Path, reference: Mapping[str, bytes]) -> Iterator[Row]:
     """Yield whether a smaller set keeps its shards when it is extended, and what the larger one has in common."""
     _run(["generate", str(place), "--specimens", str(SPECIMENS // 2)])
     before = set_files(LocalFolder(place))
-    _run(["extend", str(place), "--specimens", str(SPECIMENS)])
+    _run(["generate", str(place), "--specimens", str(SPECIMENS)])
     after = set_files(LocalFolder(place))
-    shards = {name: content for name, content in before.items() if name.startswith(("data/", "internals/", "shards/"))}
+    shards = {name: content for name, content in before.items() if name.startswith(("data/", "internals/"))}
     kept = sum(after[name] == content for name, content in shards.items())
     other = committed_problems(after, reference)
     what = f"{SPECIMENS // 2} gearboxes extended to {SPECIMENS}"

@@ -91,16 +91,18 @@ def outcome_rows(place: Path, whole: Path, asked: Mapping[str, Reader], count: i
 def readers(whole: Path) -> dict[str, Reader]:
     """Return what reads a set of a stranger, by name; each receives the set and a path for what it writes.
 
-    `generate` goes on in the stranger's folder with one's own configuration, that of the unchanged set.
+    `generate` goes on in the stranger's folder with one's own configuration, that of the unchanged set; `extend` asks
+    for one gearbox more.
     """
-    own = stored_design((whole / "config.yaml").read_bytes(), "config.yaml")
+    content = (whole / "config.yaml").read_bytes()
+    own = stored_design(content, "config.yaml")
+    more = stored_design(content, "config.yaml", {"specimens": own.specimens + 1})
     return {
         "open": _open,
         "verify": _verify,
         "publish": _publish,
-        "merge": lambda folder, out: _done(siggen.merge([folder], out)),
-        "extend": lambda folder, _out: _done(siggen.extend(folder, "+1", engine="serial")),
-        "generate": lambda folder, _out: _done(siggen.generate(own, folder, engine="serial")),
+        "extend": lambda folder, _out: _done(siggen.generate(more, folder, executor="serial")),
+        "generate": lambda folder, _out: _done(siggen.generate(own, folder, executor="serial")),
         "explore": _explore,
         "report": _report,
     }
@@ -112,7 +114,7 @@ def _done(_result: object) -> None:
 
 def _open(folder: Path, _out: Path) -> None:
     dataset = siggen.open(folder)
-    _done((repr(dataset), dataset.labels().num_rows, dataset.damage().num_rows, dataset.row_groups()))
+    _done((repr(dataset), dataset.labels().num_rows, dataset.damage().num_rows, dataset.shards()))
     for batch in dataset.records():
         dataset.record(batch["record_id"][0].as_py())
     if dataset.internal_columns:

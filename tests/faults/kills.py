@@ -1,4 +1,4 @@
-"""SIGKILL at random moments, on every engine, while a small set of the default model is made; what came of it.
+"""SIGKILL at random moments, on every executor, while a small set of the default model is made; what came of it.
 
 After every run each committed file is compared with that of an undisturbed set, and the same command goes on. When the
 set is finished all its files are compared, and the next kills hit a new one.
@@ -31,10 +31,10 @@ from tests.faults.set_files import committed_problems, committed_shards, set_fil
 from tests.faults.victim_run import PARTS
 
 DRIVER, WORKER, NODE = "driver", "worker", "node"
-PART_AND_MERGE, RAY_CLUSTER = "part + merge", "ray, two nodes"
-COUNTS = {"processes": 100, "serial": 20, PART_AND_MERGE: 20, "dask": 20, "ray": 20, RAY_CLUSTER: 10}
-QUICK_COUNTS = {"processes": 3, "serial": 2, PART_AND_MERGE: 2}
-VICTIMS = {"serial": (DRIVER,), PART_AND_MERGE: (DRIVER,), RAY_CLUSTER: (NODE,)}
+PARTS_AND_END, RAY_CLUSTER = "parts", "ray, two nodes"
+COUNTS = {"processes": 100, "serial": 20, PARTS_AND_END: 20, "dask": 20, "ray": 20, RAY_CLUSTER: 10}
+QUICK_COUNTS = {"processes": 3, "serial": 2, PARTS_AND_END: 2}
+VICTIMS = {"serial": (DRIVER,), PARTS_AND_END: (DRIVER,), RAY_CLUSTER: (NODE,)}
 TRAIL = Path("runs") / "kills.jsonl"
 HANG_S, ORPHANS_S, RUNS_PER_STEP = 300.0, 2.0, 30
 
@@ -51,7 +51,7 @@ class Kill:
 
 @dataclass(slots=True)
 class Siege:
-    """The kills on one engine and what came of them.
+    """The kills on one executor and what came of them.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class Siege:
         How long an undisturbed run takes; a kill comes up to four fifths of it after the last (of a part: its share).
     """
 
-    engine: str
+    executor: str
     count: int
     folder: Path
     reference: Mapping[str, bytes]
@@ -74,12 +74,12 @@ class Siege:
 
     def run(self) -> Self:
         """Kill until there were as many as asked for and the last set is finished."""
-        chance = Random(f"kills {self.engine}")
-        with RayCluster(self.folder) if self.engine == RAY_CLUSTER else nullcontext() as cluster:
+        chance = Random(f"kills {self.executor}")
+        with RayCluster(self.folder) if self.executor == RAY_CLUSTER else nullcontext() as cluster:
             while len(self.kills) < self.count:
                 self.sets += 1
-                place = self.folder / f"{self.engine.split()[0]}_{self.sets}"
-                for step in steps(self.engine, place):
+                place = self.folder / f"{self.executor.split()[0]}_{self.sets}"
+                for step in steps(self.executor, place):
                     self._until_done(step, chance, cluster)
                 files = set_files(LocalFolder(place))
                 self.wrong += whole_set_problems(place, files, self.reference)
@@ -106,7 +106,7 @@ class Siege:
                     break
                 except subprocess.TimeoutExpired:
                     kill = _kill(
-                        chance.choice(VICTIMS.get(self.engine, (DRIVER, WORKER, WORKER))), driver, chance, cluster
+                        chance.choice(VICTIMS.get(self.executor, (DRIVER, WORKER, WORKER))), driver, chance, cluster
                     )
                 if kill is not None:
                     self._note(kill, Path(step[1]), time.monotonic() - started_s)
@@ -116,14 +116,14 @@ class Siege:
 
     @property
     def _pause_s(self) -> float:
-        return 0.8 * self.horizon_s / (PARTS if self.engine == PART_AND_MERGE else 1)
+        return 0.8 * self.horizon_s / (PARTS if self.executor == PARTS_AND_END else 1)
 
     def _note(self, kill: Kill, place: Path, after_s: float) -> None:
         there = committed_shards(dict.fromkeys(LocalFolder(place).names(), b""))
         self.kills.append(replace(kill, after_s=after_s, committed=len(there)))
         TRAIL.parent.mkdir(exist_ok=True)
         with TRAIL.open("a") as trail:
-            facts = {"engine": self.engine, "set": self.sets, "wrong": len(self.wrong), **asdict(self.kills[-1])}
+            facts = {"executor": self.executor, "set": self.sets, "wrong": len(self.wrong), **asdict(self.kills[-1])}
             trail.write(json.dumps(facts) + "\n")
 
     def _ended(self, driver: subprocess.Popen[bytes], said: BinaryIO) -> bool:
@@ -151,7 +151,7 @@ class Siege:
         wrong = f"{len(self.wrong)} wrong: {'; '.join(self.wrong[:5])}"
         ends = f"workers ended {orphans_s:.2f} s after their driver; " if DRIVER in victims else ""
         return Row(
-            f"{len(self.kills)} kills, {self.engine} ({counts})",
+            f"{len(self.kills)} kills, {self.executor} ({counts})",
             wrong if self.wrong else sets,
             f"{ends}{self.gave_up} runs gave up in words",
             None,
@@ -161,15 +161,15 @@ class Siege:
 
 
 def rows(*, quick: bool) -> Iterator[Row]:
-    """Yield a row per engine; every kill is also appended to `runs/kills.jsonl` as it happens."""
+    """Yield a row per executor; every kill is also appended to `runs/kills.jsonl` as it happens."""
     counts = QUICK_COUNTS if quick else COUNTS
     # short, since Ray keeps sockets below it
     with tempfile.TemporaryDirectory(prefix="kills", dir="/tmp") as name:
         folder = Path(name)
         os.environ.update(OPEN, RAY_TMPDIR=str(folder / "r"))
         reference, horizon_s = undisturbed(folder / "reference")
-        for engine in [one for one in counts if _installed(one)]:
-            yield Siege(engine, counts[engine], folder, reference, horizon_s).run().row
+        for executor in [one for one in counts if _installed(one)]:
+            yield Siege(executor, counts[executor], folder, reference, horizon_s).run().row
 
 
 def undisturbed(place: Path) -> tuple[dict[str, bytes], float]:
@@ -182,13 +182,12 @@ def undisturbed(place: Path) -> tuple[dict[str, bytes], float]:
     return set_files(LocalFolder(place)), time.monotonic() - started_s
 
 
-def steps(engine: str, place: Path) -> list[list[str]]:
+def steps(executor: str, place: Path) -> list[list[str]]:
     """Return the steps that make a set, each as arguments of `victim_run`; the place is the second one."""
-    if engine != PART_AND_MERGE:
-        return [["generate", str(place), "--engine", engine.split(",", maxsplit=1)[0]]]
-    parts = [f"{place}_{number}" for number in range(1, PARTS + 1)]
-    made = [["part", part, "--engine", "serial", "--part", str(number)] for number, part in enumerate(parts, 1)]
-    return [*made, ["merge", str(place), *parts]]
+    if executor != PARTS_AND_END:
+        return [["generate", str(place), "--executor", executor.split(",", maxsplit=1)[0]]]
+    parts = [["part", str(place), "--part", str(number), "--executor", "serial"] for number in range(1, PARTS + 1)]
+    return [*parts, ["generate", str(place), "--executor", "serial"]]
 
 
 def start(step: list[str], said: BinaryIO) -> subprocess.Popen[bytes]:
@@ -220,8 +219,9 @@ def _kill(victim: str, driver: subprocess.Popen[bytes], chance: Random, cluster:
 
 
 def _works(process: Process) -> bool:
-    """Tell whether it is a worker: of `processes` and Dask, or of Ray, whose agents have names like its workers."""
-    return "spawn_main" in process.command or (process.command.startswith("ray::") and "Agent" not in process.command)
+    """Tell whether it is a worker: of Dask, of Ray, whose agents have names like its workers, or the fork server's."""
+    own = any(name in process.command for name in ("spawn_main", "forkserver"))
+    return own or (process.command.startswith("ray::") and "Agent" not in process.command)
 
 
 def _end_family(driver: subprocess.Popen[bytes], family: list[Process]) -> None:
@@ -233,6 +233,6 @@ def _end_family(driver: subprocess.Popen[bytes], family: list[Process]) -> None:
     driver.wait()
 
 
-def _installed(engine: str) -> bool:
-    package = {"dask": "distributed", "ray": "ray", RAY_CLUSTER: "ray"}.get(engine)
+def _installed(executor: str) -> bool:
+    package = {"dask": "distributed", "ray": "ray", RAY_CLUSTER: "ray"}.get(executor)
     return package is None or importlib.util.find_spec(package) is not None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -40,15 +41,13 @@ class MotoStore:
 @contextmanager
 def moto_store() -> Iterator[MotoStore]:
     """Serve one bucket, whose address and credentials are in the environment meanwhile."""
-    import boto3
-
     logging.getLogger("werkzeug").setLevel(logging.ERROR)
     store = MotoStore()
     store.start()
     facts = {"ACCESS_KEY_ID": "test", "SECRET_ACCESS_KEY": "test", "DEFAULT_REGION": "us-east-1"}
     facts |= {"ENDPOINT_URL": store.address, "EC2_METADATA_DISABLED": "true", "MAX_ATTEMPTS": "2"}
     os.environ.update({f"AWS_{name}": value for name, value in facts.items()})
-    boto3.session.Session().client("s3").create_bucket(Bucket=BUCKET)
+    urllib.request.urlopen(urllib.request.Request(f"{store.address}/{BUCKET}", method="PUT")).close()
     try:
         yield store
     finally:

@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Self
 
 from siggen.child_environment import ONE_THREAD
-from siggen.engines.ray_engine import QUIET
+from siggen.workers.clusters import QUIET
 from tests.faults.process_tree import Process, below
 
 PORT = 26379

@@ -9,13 +9,10 @@ from pathlib import Path
 from siggen.dataset.storage import Storage
 from siggen.file_writing import LEFTOVER_SUFFIX
 
-PER_RUN = "run.json"
-"""Says when and with which processes a set was made."""
-
 
 def set_files(storage: Storage) -> dict[str, bytes]:
-    """Return name -> content of all files but the one of the run."""
-    return {name: storage.get(name) for name in storage.names() if name != PER_RUN}
+    """Return name -> content of all files."""
+    return {name: storage.get(name) for name in storage.names()}
 
 
 def digest(files: Mapping[str, bytes]) -> str:
@@ -33,12 +30,12 @@ def whole_set_problems(folder: Path, found: Mapping[str, bytes], reference: Mapp
 
 
 def committed_shards(found: Mapping[str, bytes]) -> list[str]:
-    """Return the shards whose sidecar is there: what a killed run has promised."""
-    return [Path(name).stem for name in found if name.startswith("shards/")]
+    """Return the shards whose rows are there, which come last: what a killed run leaves whole."""
+    return [Path(name).stem for name in found if name.startswith("data/")]
 
 
 def committed_problems(found: Mapping[str, bytes], reference: Mapping[str, bytes]) -> list[str]:
     """Return the files of committed shards that are not those of an undisturbed set."""
     keys = committed_shards(found)
-    names = [name for name in reference if Path(name).stem in keys and not name.startswith(("metadata/", "damage/"))]
+    names = [name for name in reference if Path(name).stem in keys]
     return [name for name in names if found.get(name) != reference[name]]

@@ -68,7 +68,7 @@ def full_disk(chance: Random, place: Path, reference: Mapping[str, bytes]) -> li
     if not _mounted(f"size={kib}k", place):
         return ["not tried"]
     try:
-        outcome = _outcome(["generate", str(place / "set"), "--engine", "serial"])
+        outcome = _outcome(["generate", str(place / "set"), "--executor", "serial"])
         return [outcome, *_finished(place / "set", reference, lambda: _mounted("remount,size=100m", place))]
     finally:
         subprocess.run(["umount", str(place)], check=False)
@@ -84,18 +84,18 @@ def torn_file(chance: Random, place: Path, whole: Path, reference: Mapping[str, 
     """Cut one file of a set without manifest short, or fill its end with zeros, as a crash of the machine may."""
     shutil.copytree(whole, place)
     (place / "manifest.json").unlink()
-    torn = place / chance.choice([name for name in reference if name.startswith(("data/", "internals/", "shards/"))])
+    torn = place / chance.choice([name for name in reference if name.startswith(("data/", "internals/"))])
     content = torn.read_bytes()
     kept = chance.randrange(len(content))
     torn.write_bytes(content[:kept] + (bytes(len(content) - kept) if chance.random() < 0.5 else b""))
-    return [_outcome(["generate", str(place), "--engine", "serial"]), *_finished(place, reference)]
+    return [_outcome(["generate", str(place), "--executor", "serial"]), *_finished(place, reference)]
 
 
 def lost_store(chance: Random, place: Path, reference: Mapping[str, bytes], horizon_s: float) -> list[str]:
     """Stop the server at a random moment, for good or for seconds, and start it again with what it held."""
     address = f"s3://sets/{place.name}-{chance.randrange(10**9)}"
     with moto_store() as server, tempfile.TemporaryFile() as said:
-        run = start(["generate", address, "--engine", "serial"], said)
+        run = start(["generate", address, "--executor", "serial"], said)
         time.sleep(chance.uniform(0.2, 0.6) * horizon_s)
         server.stop()
         if chance.random() < 0.5:
@@ -105,7 +105,7 @@ def lost_store(chance: Random, place: Path, reference: Mapping[str, bytes], hori
         server.start()
         said.seek(0)
         outcome = _judged(code, said.read().decode(errors="replace"))
-        again = _outcome(["generate", address, "--engine", "serial"])
+        again = _outcome(["generate", address, "--executor", "serial"])
         same = set_files(storage_at(address)) == reference
     return [outcome, *([] if again == WENT_ON and same else [CHANGED])]
 
@@ -113,7 +113,7 @@ def lost_store(chance: Random, place: Path, reference: Mapping[str, bytes], hori
 def _finished(place: Path, reference: Mapping[str, bytes], mend: Callable[[], object] = lambda: None) -> list[str]:
     """Finish the set once the lack is mended; return what is wrong with it."""
     mend()
-    again = _outcome(["generate", str(place), "--engine", "serial"])
+    again = _outcome(["generate", str(place), "--executor", "serial"])
     wrong = whole_set_problems(place, set_files(LocalFolder(place)), reference)
     return [CHANGED] if wrong or again != WENT_ON else []
 

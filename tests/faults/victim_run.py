@@ -57,29 +57,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(given: argparse.Namespace) -> None:
-    from siggen.engines.registry import engine_of
-    from siggen.sets.extension import extend
     from siggen.sets.generation import generate
-    from siggen.sets.parts import generate_part, merge
 
-    if given.step == "merge":
-        merge(given.sources, given.place)
-        return
-    engine = engine_of(given.engine, given.workers, given.address)
-    if given.step == "extend":
-        extend(given.place, given.specimens, engine=engine)
-    elif given.step == "part":
-        generate_part(default_model(given.specimens), given.place, (given.part, PARTS), engine=engine)
-    else:
-        generate(default_model(given.specimens), given.place, engine=engine)
+    part = (given.part, PARTS) if given.step == "part" else None
+    who = {"executor": given.executor, "address": given.address}
+    generate(default_model(given.specimens), given.place, given.workers, part=part, **who)
 
 
 def _arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m tests.faults.victim_run", description=__doc__)
-    parser.add_argument("step", choices=("generate", "part", "merge", "extend"))
+    parser.add_argument("step", choices=("generate", "part"))
     parser.add_argument("place")
-    parser.add_argument("sources", nargs="*", help="of merge")
-    parser.add_argument("--engine", default="processes")
+    parser.add_argument("--executor", default="processes")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--address")
     parser.add_argument("--memory-mb", type=int, default=0)

@@ -15,7 +15,7 @@ FRESH_COMMANDS = {
     "tests/diagnostics/cli/test_two_stages.py", "tests/diagnostics/cli/test_planetary_reports.py",
 }  # fmt: skip
 """Beside walks and pages: fresh processes are their subject, or their tests are slow ones."""
-WHO_SIMULATES = {"--engine", "--workers", "engine", "workers"}
+WHO_SIMULATES = {"--executor", "--workers", "executor", "workers"}
 
 
 def calls(path: str) -> Iterator[ast.Call]:

@@ -17,7 +17,7 @@ SIGGEN_ROOMS = (
     "uncollected", "errors", "names", "live_process", "file_writing", "printable", "sources", "seeding",
     "child_environment", "arrays", "compiled", "uniform_spline", "lanes", "keys",
     "gears", "drivetrain", "damage", "mesh", "motion", "sensing", "noise", "sensors", "life", "config", "rig",
-    "gearbox", "columns", "record", "checks", "dataset", "engines", "sets", "views", "publication", "library", "cli",
+    "gearbox", "columns", "record", "checks", "dataset", "workers", "sets", "views", "publication", "library", "cli",
 )  # fmt: skip
 DIAGNOSTICS_ROOMS = (
     "base", "signal", "records", "indicators", "statistics", "loader", "training", "judging", "scoring", "recordings",

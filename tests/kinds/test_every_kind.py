@@ -41,7 +41,7 @@ def states(what: str) -> dict[str, Any]:
 def sets(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Dataset]:
     folder = tmp_path_factory.mktemp("kinds")
     for what in SETS:
-        siggen.generate(load_config(machine(states=states(what), sensors=SENSORS)), folder / what, engine="serial")
+        siggen.generate(load_config(machine(states=states(what), sensors=SENSORS)), folder / what, executor="serial")
     return {what: siggen.open(folder / what) for what in SETS}
 
 
@@ -171,7 +171,7 @@ def test_housings_carry_the_same_torque_and_are_named(kind: str, tmp_path: Path)
     )  # fmt: skip
     raw["dynamics"]["model"] = "casing"
     config = load_config(raw)
-    siggen.generate(config, tmp_path / "set", engine="serial")
+    siggen.generate(config, tmp_path / "set", executor="serial")
     dataset = siggen.open(tmp_path / "set")
     gearbox, row = siggen.draw(config), dataset.record(0)
     alone = siggen.run(gearbox, truth=["mesh_force_n"])

@@ -66,7 +66,10 @@ MISTAKES = {
     "mistake.yaml": "sensors.lid.toy_drift.size_m_s2_per_s: received -1.0; allowed: a number of at least 0",
 }
 LINES = {
-    **{name: f"siggen generate {name}.yaml --out {name} --engine serial" for name in ("toy", "alone", "both", "drift")},
+    **{
+        name: f"siggen generate {name}.yaml --out {name} --executor serial"
+        for name in ("toy", "alone", "both", "drift")
+    },
     "plan": "siggen plan toy.yaml --trial 0 --set sensors.seat.range_um_m=0.5",
     **{change: f"siggen plan --trial 0 {change}" for change in MISTAKES},
     "publish": "siggen publish toy --facts publication.yaml --to published",
@@ -224,7 +227,7 @@ def test_a_file_of_one_record_says_what_its_channel_holds(folder: Path) -> None:
 @pytest.mark.slow
 def test_report_and_audit_name_them_and_no_others(folder: Path) -> None:
     lines = {
-        "generate": "siggen generate toy.yaml --set specimens=10 --out judged --engine serial",
+        "generate": "siggen generate toy.yaml --set specimens=10 --out judged --executor serial",
         "report": "siggen-diagnostics report judged --no-cnn --out report",
         "audit": "siggen-diagnostics audit judged --out audit",
     }

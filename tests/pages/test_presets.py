@@ -42,8 +42,8 @@ def preset(name: str, states: tuple[str, ...], **changes: Any) -> SetDesign:
 def test_a_preset_in_miniature_is_generated_and_verified(tmp_path: Path) -> None:
     """One that extends another."""
     config = preset("industrial", ("healthy", THROUGH), specimens=1, duration_s=0.1)
-    siggen.generate(config, tmp_path / "set", engine="serial")
-    assert verify(tmp_path / "set", sample=1, engine="serial").mismatches == ()
+    siggen.generate(config, tmp_path / "set", executor="serial")
+    assert verify(tmp_path / "set", sample=1, executor="serial").mismatches == ()
     assert siggen.open(tmp_path / "set").manifest.get("failures", []) == []
 
 
@@ -76,7 +76,7 @@ def test_slight_damage_of_the_bench_costs_one_to_three_percent_of_stiffness() ->
 
 def test_states_of_one_bench_gearbox_share_gears_speed_torque_and_levels_of_noise(tmp_path: Path) -> None:
     config = preset("bench", ("healthy", "healthy_again", THROUGH), specimens=2, duration_s=0.05)
-    siggen.generate(config, tmp_path / "bench", engine="serial")
+    siggen.generate(config, tmp_path / "bench", executor="serial")
     table = siggen.open(tmp_path / "bench").labels()
     rows = table.to_pylist()
     for specimen in (0, 1):
@@ -95,7 +95,7 @@ def test_states_of_one_bench_gearbox_share_gears_speed_torque_and_levels_of_nois
 
 def test_healthy_records_of_the_bench_have_sidebands(tmp_path: Path) -> None:
     config = preset("bench", ("healthy",), specimens=4, duration_s=0.6)
-    siggen.generate(config, tmp_path / "bench", engine="serial")
+    siggen.generate(config, tmp_path / "bench", executor="serial")
     measured = measured_set(siggen.open(tmp_path / "bench"))
     assert "healthy_without_sidebands" not in [finding.trap for finding in separability_findings(measured)]
     found = realism(measured)
@@ -113,7 +113,7 @@ def test_healthy_records_of_the_bench_have_sidebands(tmp_path: Path) -> None:
 @pytest.mark.slow  # perfect gears of any set: tests/diagnostics/audit
 def test_the_ideal_set_is_trivially_separable(tmp_path: Path) -> None:
     config = preset("../tests/configs/ideal", ("healthy", "slight", THROUGH), specimens=4, duration_s=0.4)
-    siggen.generate(config, tmp_path / "ideal", engine="serial")
+    siggen.generate(config, tmp_path / "ideal", executor="serial")
     findings = separability_findings(measured_set(siggen.open(tmp_path / "ideal")))
     assert "healthy_without_sidebands" in [finding.trap for finding in findings]
     assert verdict(findings, config.specimens).startswith("The set is trivially separable")

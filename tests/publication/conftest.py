@@ -35,10 +35,10 @@ def facts_file(folder: Path, **changes: Any) -> Path:
 
 @pytest.fixture(scope="session")
 def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a set of this version, extended once."""
+    """Return a set that grew once."""
     folder = tmp_path_factory.mktemp("kept")
-    siggen.generate(load_config(CONFIG, ["specimens=1"]), folder / "set", engine="serial")
-    siggen.extend(folder / "set", 2, workers=0)
+    siggen.generate(load_config(CONFIG, ["specimens=1"]), folder / "set", executor="serial")
+    siggen.generate(load_config(CONFIG, ["specimens=2"]), folder / "set", executor="serial")
     return folder / "set"
 
 

@@ -96,7 +96,7 @@ def test_a_published_folder_is_a_set_that_opens_and_verifies(kept: Path, publish
     names = set(siggen.open(published).manifest["files"])
     made = {"croissant.json", "README.md"}
     assert names > {*made, "previews/healthy.png", "previews/severe.png"}
-    for name in ("data/train-00000.parquet", "config.yaml", "shards/train-00001.json"):
+    for name in ("data/train-00000.parquet", "config.yaml", "labels.parquet"):
         assert (published / name).read_bytes() == (kept / name).read_bytes()
     (published / "croissant.json").write_bytes((published / "croissant.json").read_bytes() + b" ")
     assert [mismatch.what for mismatch in verify(published, 0).mismatches] == ["croissant.json"]

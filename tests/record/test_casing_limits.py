@@ -56,7 +56,7 @@ def test_diverged_records_are_counted_listed_and_leave_the_others(tmp_path: Path
     changes = [*SHORT[1:], HEALTHY, "specimens=6"]
     changes += [f"{DAMPED}={{one_of: [800, 1e+20]}}"]
     arguments = [word for change in changes for word in ("--set", change)]
-    arguments += ["--allowed-loss", "1", "--out", str(tmp_path / "set"), "--engine", "serial"]
+    arguments += ["--allowed-loss", "1", "--out", str(tmp_path / "set"), "--executor", "serial"]
     result = CliRunner().invoke(app, ["generate", CONFIG, *arguments])
     assert result.exit_code == EXIT_RECORDS_FAILED, result.output
     manifest = json.loads((tmp_path / "set" / "manifest.json").read_text())

@@ -79,7 +79,7 @@ def test_no_list_of_requirements_names_siggen_itself() -> None:
     "line",
     [
         "pip install --upgrade siggen",
-        "install with: pip install 'siggen[s3]'",
+        "install with: pip install 'siggen[dask]'",
         'pip install "diagnostics"',
         f"python -m pip install -c constraints.txt {DISTRIBUTION}==0.3.0",
         f"uv add {DISTRIBUTION}",
@@ -98,7 +98,7 @@ def test_a_line_that_brings_a_stranger_is_noticed(line: str) -> None:
 @pytest.mark.parametrize(
     "line",
     [
-        how_to_install("cnn,s3"),
+        how_to_install("cnn,dask"),
         ".venv/bin/python -m pip install -c constraints.txt -e '.[diagnostics,cnn]'",
         "pip install --no-deps dist/siggen_gears-0.3.0-py3-none-any.whl",
         "RUN python -m pip install --no-cache-dir --require-hashes -r /locks/siggen.txt",

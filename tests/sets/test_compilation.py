@@ -9,10 +9,8 @@ import pytest
 from numba.core.dispatcher import Dispatcher
 
 import siggen
+import siggen.sets.set_run
 from siggen.damage import whole_loss
-from siggen.dataset.storage import LocalFolder
-from siggen.engines.processes import ProcessEngine
-from siggen.engines.serial import SerialEngine
 from siggen.gearbox.design import SetDesign
 from siggen.motion import exponential_step
 from siggen.record import compilation
@@ -20,8 +18,6 @@ from siggen.record.compilation import is_compiled, run_part
 from siggen.sets import drawn
 from siggen.sets.compilation import compilation_text
 from siggen.sets.drawn import compilation_parts, simulated, to_compile
-from siggen.sets.interruption import Interruption
-from siggen.sets.set_run import set_run
 
 HEALTHY = ["specimens=1", "duration_s=0.05", "states={healthy: {}}"]
 
@@ -65,19 +61,14 @@ def test_an_empty_cache_is_told_and_a_filled_one_is_not(short: SetDesign, monkey
 
 
 def test_a_run_compiles_before_its_first_record(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    mapped: list[type] = []
+    called: list[type] = []
 
-    class Noting(ProcessEngine):
-        def map(self, function, tasks):
-            def noted():
-                for task in tasks:
-                    mapped.append(type(task))
-                    yield task
-
-            return SerialEngine().map(function, noted())
+    def noted(workers, function, tasks, *_):
+        for position, task in enumerate(tasks):
+            called.append(type(task))
+            yield position, function(task)
 
     monkeypatch.setattr(drawn, "is_compiled", lambda method: False)
-    storage, short = LocalFolder(tmp_path / "set"), siggen.load_config("quickstart", HEALTHY)
-    with storage.writing(), Interruption() as interruption:
-        set_run(short, storage, Noting(1), None, interruption).finish()
-    assert [kind.__name__ for kind in mapped] == ["CompilationPart", "CompilationPart", "ChunkStretch"]
+    monkeypatch.setattr(siggen.sets.set_run, "results", noted)
+    siggen.generate(siggen.load_config("quickstart", HEALTHY), tmp_path / "set", workers=1)
+    assert [kind.__name__ for kind in called] == ["CompilationPart", "CompilationPart", "ShardPlan"]

@@ -10,52 +10,48 @@ from unittest.mock import patch
 import pyarrow as pa
 import pytest
 
+from siggen.dataset.environment import environment
 from siggen.dataset.reading import open as open_set
-from siggen.errors import ConfigError, DatasetError, EngineError, UsageError
-from siggen.gearbox import plan
-from siggen.sets.extension import extend
+from siggen.errors import DatasetError, EngineError
+from siggen.sets.generation import generate
 from siggen.sets.set_run import Generation
 from tests.dataset.fake_set import (
     fake_config,
     fake_physics,
     file_bytes,
     simulate,
-    simulate_with_a_bug,
+    small_shards,
     verify_fake_set,
 )
 
 
-def extend_fake_set(path: Path, specimens: int | str, simulation: Any = simulate, group: int = 30_000) -> Generation:
-    """Extend with the stand-in; two gearboxes per full shard, so that sets end in partial ones."""
-    with fake_physics(simulation), patch.multiple(plan, SHARD_BYTES=group, GROUP_CHANNEL_BYTES=4_096):
-        return extend(path, specimens, 0)
-
-
-def write(path: Path, specimens: int) -> Path:
-    from siggen.sets.generation import generate
-
-    with fake_physics(), patch.multiple(plan, SHARD_BYTES=30_000, GROUP_CHANNEL_BYTES=4_096):
-        generate(fake_config(specimens=specimens), path, 0)
-    return path
+def write(path: Path, specimens: int, simulation: Any = simulate, workers: int = 0) -> Generation:
+    """Generate with the stand-in; two gearboxes per full shard, so that sets end in partial ones."""
+    with fake_physics(simulation), small_shards(30_000):
+        return generate(fake_config(specimens=specimens), path, workers)
 
 
 @pytest.fixture(scope="module")
 def seven(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A set of seven gearboxes; tests that change it copy it."""
-    return write(tmp_path_factory.mktemp("seven") / "set", 7)
+    path = tmp_path_factory.mktemp("seven") / "set"
+    write(path, 7)
+    return path
 
 
 @pytest.fixture(scope="module")
 def thirteen(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A set of thirteen, made at once."""
-    return write(tmp_path_factory.mktemp("thirteen") / "set", 13)
+    path = tmp_path_factory.mktemp("thirteen") / "set"
+    write(path, 13)
+    return path
 
 
 @pytest.fixture(scope="module")
 def extended(seven: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The set of seven, extended by six."""
     folder = shutil.copytree(seven, tmp_path_factory.mktemp("extended") / "set")
-    extend_fake_set(folder, "+6")
+    write(folder, 13)
     return folder
 
 
@@ -71,16 +67,16 @@ def rows(path: Path) -> dict[str, list[dict[str, Any]]]:
     }
 
 
-@pytest.mark.parametrize("steps", [["+6"], ["+1", "+2", 13]], ids=str)
+@pytest.mark.parametrize("steps", [[13], [8, 10, 13]], ids=str)
 def test_an_extended_set_holds_the_records_of_one_generated_at_once(
-    seven: Path, thirteen: Path, tmp_path: Path, steps: list[Any]
+    seven: Path, thirteen: Path, tmp_path: Path, steps: list[int]
 ) -> None:
     shutil.copytree(seven, tmp_path / "grown")
     for step in steps:
         before = file_bytes(tmp_path / "grown")
-        made = extend_fake_set(tmp_path / "grown", step)
+        made = write(tmp_path / "grown", step)
         after = file_bytes(tmp_path / "grown")
-        kept = [name for name in before if name.startswith(("data/", "shards/"))]
+        kept = [name for name in before if name.startswith("data/")]
         assert {name: after[name] for name in kept} == {name: before[name] for name in kept}
         assert made.records_made < 6 * 13
     assert rows(tmp_path / "grown") == rows(thirteen)
@@ -102,45 +98,41 @@ def test_the_set_stays_readable_while_it_grows_and_the_same_call_continues(
 
     before = rows(tmp_path / "set")
     with pytest.raises(EngineError, match="record 60"):
-        extend_fake_set(tmp_path / "set", "+6", fails_late)
+        write(tmp_path / "set", 13, fails_late)
     assert rows(tmp_path / "set") == before
-    with pytest.raises(UsageError, match="an extension to 13 specimens was begun"):
-        extend_fake_set(tmp_path / "set", "+3")
-    again = extend_fake_set(tmp_path / "set", "+6")
+    for other in (7, 8):
+        (tmp_path / "set/README.md").unlink(missing_ok=True)  # so that there is something to do
+        with pytest.raises(DatasetError, match=r"holds \d files? that a set of \d gearboxes does not have"):
+            write(tmp_path / "set", other)
+    again = write(tmp_path / "set", 13)
     assert again.records_made < 36
     assert rows(tmp_path / "set") == rows(thirteen)
 
 
-@pytest.mark.parametrize("name", ["manifest.json", "metadata/train.parquet", "data/train-00001.parquet", "README.md"])
+@pytest.mark.parametrize("name", ["manifest.json", "labels.parquet", "data/train-00001.parquet", "README.md"])
 def test_a_lost_file_of_an_extended_set_is_made_again_by_generate(extended: Path, tmp_path: Path, name: str) -> None:
-    from siggen.sets.generation import generate
-
     shutil.copytree(extended, tmp_path / "set")
     before = file_bytes(tmp_path / "set")
     (tmp_path / "set" / name).unlink()
-    with fake_physics(), patch.multiple(plan, SHARD_BYTES=30_000, GROUP_CHANNEL_BYTES=4_096):
-        generate(fake_config(specimens=13), tmp_path / "set", 0)
+    write(tmp_path / "set", 13)
     assert file_bytes(tmp_path / "set") == before
 
 
-def test_a_damaged_set_is_not_extended(seven: Path, tmp_path: Path) -> None:
+def test_what_is_damaged_of_a_set_that_grows_is_mended_and_said(seven: Path, extended: Path, tmp_path: Path) -> None:
     shutil.copytree(seven, tmp_path / "set")
     shard = tmp_path / "set/data/train-00000.parquet"
     content = bytearray(shard.read_bytes())
     content[len(content) // 2] ^= 1
     shard.write_bytes(content)
-    with pytest.raises(DatasetError, match=r"1 of its \d shards are missing, damaged .*train-00000"):
-        extend_fake_set(tmp_path / "set", "+6")
+    assert "train-00000 is made again" in write(tmp_path / "set", 13).notes[0]
+    assert file_bytes(tmp_path / "set") == file_bytes(extended)
 
 
-@pytest.mark.parametrize("wrong", ["", "+0", "7", "-3", "many", "+1e3", 3, "+" + "9" * 40, "+99999999"])
-def test_a_wrong_number_is_refused_before_anything_is_written(seven: Path, wrong: Any) -> None:
-    before = file_bytes(seven)
-    with pytest.raises((UsageError, ConfigError), match=r"--specimens: received|specimens"):
-        extend_fake_set(seven, wrong, simulate_with_a_bug)
-    assert file_bytes(seven) == before
-
-
-def test_generate_names_the_way_to_a_larger_set(seven: Path) -> None:
-    with pytest.raises(DatasetError, match=r"`siggen extend \S+ --specimens 9` adds"):
-        write(seven, 9)
+def test_a_finished_set_of_another_version_does_not_grow(seven: Path, tmp_path: Path) -> None:
+    shutil.copytree(seven, tmp_path / "set")
+    other = {**environment(), "siggen": "9.9", "fingerprint": "0123456789abcdef"}
+    before = file_bytes(tmp_path / "set")
+    refused = pytest.raises(DatasetError, match=r"was made by siggen \S+ \(.*this is siggen 9\.9 .* never mixed")
+    with patch("siggen.dataset.folder.environment", lambda: other), refused:
+        write(tmp_path / "set", 13)
+    assert file_bytes(tmp_path / "set") == before

@@ -5,24 +5,23 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from pathlib import Path
-from unittest.mock import patch
 
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 import siggen
 from siggen.dataset.seal import sealed, unsealed
 from siggen.errors import DatasetError
-from siggen.gearbox import plan
 from siggen.publication.publish import publish
-from siggen.sets.parts import generate_part, merge
 from siggen.sets.verification import verify
-from tests.dataset.fake_set import copy_fake_set, fake_config, fake_physics, write_fake_set
-from tests.dataset.resealed_set import facts
+from tests.dataset.fake_set import copy_fake_set, fake_physics, small_shards, write_fake_set
+from tests.dataset.resealed_set import facts, reseal
 from tests.faults.foreign_sets import outcome_rows, readers
 from tests.publication.conftest import facts_file
 
 CHANGES = 4
-QUICK_READERS = ("open", "verify", "publish", "merge", "extend", "generate")
+QUICK_READERS = ("open", "verify", "publish", "extend", "generate")
 
 
 @pytest.fixture
@@ -40,7 +39,7 @@ def resealed(folder: Path, change: Callable[[dict], object]) -> None:
 
 def test_no_reader_ends_raw_writes_elsewhere_or_shows_what_lies_beside_the_set(tmp_path: Path, folder: Path) -> None:
     asked = {name: reader for name, reader in readers(folder).items() if name in QUICK_READERS}
-    with fake_physics(), patch.multiple(plan, SHARD_BYTES=12_000, GROUP_CHANNEL_BYTES=4_096):
+    with fake_physics(), small_shards():
         rows = list(outcome_rows(tmp_path / "place", folder, asked, CHANGES))
     assert len(rows) == len(QUICK_READERS)
     assert [(row.what, row.alternative) for row in rows if not row.met] == []
@@ -51,7 +50,7 @@ def test_no_reader_ends_raw_writes_elsewhere_or_shows_what_lies_beside_the_set(t
 )
 def test_an_object_that_could_lie_elsewhere_is_refused_by_name(tmp_path: Path, folder: Path, name: str) -> None:
     (tmp_path / "bashrc").write_bytes(b"x")
-    resealed(folder, lambda m: m["files"].update({name: facts(tmp_path, "bashrc", blocks=False)}))
+    resealed(folder, lambda m: m["files"].update({name: facts(tmp_path, "bashrc")}))
     with pytest.raises(DatasetError, match=r"manifest\.json: files\..*allowed: names below the set's folder"):
         siggen.open(folder)
     with pytest.raises(DatasetError):
@@ -107,18 +106,50 @@ def test_a_pipe_in_the_place_of_a_file_does_not_wait_for_ever(folder: Path) -> N
     assert verify(folder).mismatches
 
 
-def test_a_copy_is_hashed_while_it_is_copied(tmp_path: Path) -> None:
-    for number in (1, 2):
-        with fake_physics(), patch.multiple(plan, SHARD_BYTES=12_000, GROUP_CHANNEL_BYTES=4_096):
-            generate_part(fake_config(), tmp_path / str(number), (number, 2), 0)
-    rows = tmp_path / "2" / "data" / "train-00001.parquet"
+def lies(table: pa.Table, kind: str) -> pa.Table:
+    """Return a table that is not what the manifest says: without a column, with another name or type, with nulls."""
+    place = table.schema.get_field_index("record_id")
+    if kind == "dropped":
+        return table.drop_columns(["record_id"])
+    if kind == "renamed":
+        return table.rename_columns(["id" if name == "record_id" else name for name in table.column_names])
+    if kind == "retyped":
+        return table.set_column(place, "record_id", table["record_id"].cast(pa.string()))
+    if kind == "null":
+        return table.set_column(place, "record_id", pa.array([None] * table.num_rows, pa.int64()))
+    return table.append_column("record_id", table["record_id"])
+
+
+@pytest.mark.parametrize("kind", ["dropped", "renamed", "retyped", "null", "twice"])
+@pytest.mark.parametrize("name", ["labels.parquet", "damage.parquet", "data/train-00000.parquet"])
+def test_a_table_that_lies_is_refused_by_its_name(folder: Path, name: str, kind: str) -> None:
+    pq.write_table(lies(pq.read_table(folder / name), kind), folder / name)
+    reseal(folder)
+    with pytest.raises(DatasetError, match=rf"{name} is not the promised file \(it"):
+        read_all(folder)
+
+
+def read_all(folder: Path) -> None:
+    dataset = siggen.open(folder)
+    _ = dataset.labels(), dataset.damage(), list(dataset.records())
+
+
+@pytest.mark.parametrize("name", ["labels.parquet", "damage.parquet"])
+def test_a_table_that_is_none_is_refused_by_its_name(folder: Path, name: str) -> None:
+    (folder / name).write_bytes(b"PAR1 text, sealed PAR1")
+    reseal(folder)
+    with pytest.raises(DatasetError, match=rf"{name} is not the promised file \(it cannot be decoded"):
+        read_all(folder)
+
+
+def test_published_files_are_compared_and_copied_never_linked(tmp_path: Path, folder: Path) -> None:
+    publish(folder, tmp_path / "out", facts_file(tmp_path))
+    for name in siggen.open(folder).files:
+        assert not (folder / name).samefile(tmp_path / "out" / name)
+    rows = folder / "data" / "train-00001.parquet"
     content = bytearray(rows.read_bytes())
     content[500] ^= 1
     rows.write_bytes(content)
-    with (
-        fake_physics(),
-        patch.multiple(plan, SHARD_BYTES=12_000, GROUP_CHANNEL_BYTES=4_096),
-        pytest.raises(DatasetError, match="missing or damaged in all parts"),
-    ):
-        merge([tmp_path / "1", tmp_path / "2"], tmp_path / "out")
-    assert not (tmp_path / "out" / "data" / "train-00001.parquet").exists()
+    with pytest.raises(DatasetError, match="SHA-256 differs"):
+        publish(folder, tmp_path / "again", facts_file(tmp_path))
+    assert not (tmp_path / "again").exists()

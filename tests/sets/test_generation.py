@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-import json
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
+from unittest.mock import patch
 
 import pytest
 
+from siggen.dataset.environment import environment
 from siggen.dataset.reading import open as open_set
-from siggen.dataset.seal import unsealed
+from siggen.dataset.shard import about_of, unpacked
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError, EngineError
 from siggen.file_writing import LEFTOVER_SUFFIX
-from siggen.sets.extension import extend
 from siggen.sets.generation import generate
 from siggen.sets.loss_limit import LossError
 from tests.dataset.fake_set import (
@@ -40,7 +42,7 @@ def test_a_set_has_exactly_its_files_and_they_match_the_plan(reference: Path) ->
 
 
 def test_bytes_do_not_depend_on_the_number_of_workers(reference: Path, tmp_path: Path) -> None:
-    assert write_fake_set(tmp_path, workers=2).records_made == 30  # none twice, as where a piece is of no use
+    assert write_fake_set(tmp_path, workers=2).records_made == 30  # none twice
     assert file_bytes(tmp_path) == file_bytes(reference)
 
 
@@ -66,7 +68,7 @@ def test_a_finished_set_is_left_alone(reference: Path, tmp_path: Path) -> None:
     assert {p: p.stat().st_mtime_ns for p in tmp_path.rglob("*")} == times
 
 
-LOST = [name for name in FAKE_FILES if name not in ("run.json", "config.yaml")]
+LOST = [name for name in FAKE_FILES if name != "config.yaml"]
 ONE_OF_EACH = sorted({name.split("/")[0]: name for name in LOST}.values())
 
 
@@ -76,20 +78,57 @@ def test_a_lost_file_is_made_again_with_the_same_bytes(reference: Path, tmp_path
     (tmp_path / name).unlink()
     again = write_fake_set(tmp_path)
     assert not again.was_finished
-    assert again.records_made == (6 if name.startswith(("data/", "shards/")) else 0)
+    assert again.records_made == (6 if name.startswith("data/") else 0)
     assert again.shards_taken_over == 5 - again.records_made // 6
     assert file_bytes(tmp_path) == file_bytes(reference)
 
 
-def test_a_shard_damaged_between_two_runs_is_made_again(reference: Path, tmp_path: Path) -> None:
-    copy_fake_set(tmp_path)
-    (tmp_path / "manifest.json").unlink()
-    shard = tmp_path / "data/train-00001.parquet"
+def damaged(shard: Path) -> None:
     content = bytearray(shard.read_bytes())
     content[len(content) // 2] ^= 1
     shard.write_bytes(content)
-    assert write_fake_set(tmp_path).records_made == 6
+
+
+def torn(shard: Path) -> None:
+    shard.write_bytes(shard.read_bytes()[:-100])
+
+
+def of_another_record(shard: Path) -> None:
+    shard.write_bytes(shard.with_name("train-00002.parquet").read_bytes())
+
+
+def strange(shard: Path) -> None:
+    shard.write_bytes(b"PAR1 and nothing else")
+
+
+@pytest.mark.parametrize("change", [damaged, torn, of_another_record, strange])
+def test_a_shard_that_is_not_as_it_was_made_is_made_again_and_that_is_said(
+    reference: Path, tmp_path: Path, change: Any
+) -> None:
+    copy_fake_set(tmp_path)
+    (tmp_path / "manifest.json").unlink()
+    change(tmp_path / "data/train-00001.parquet")
+    again = write_fake_set(tmp_path)
+    assert (again.records_made, again.shards_taken_over) == (6, 4)
+    assert [note.partition(":")[0] for note in again.notes] == ["train-00001 is made again"]
     assert file_bytes(tmp_path) == file_bytes(reference)
+
+
+def test_shards_of_another_version_are_made_again_and_said_by_whom_they_were(reference: Path, tmp_path: Path) -> None:
+    other = {**environment(), "siggen": "0.0.9", "fingerprint": "0123456789abcdef"}
+    with patch("siggen.sets.set_run.environment", lambda: other), pytest.raises(EngineError):
+        write_fake_set(tmp_path, simulation=simulate_with_a_bug)
+    resumed = write_fake_set(tmp_path)
+    assert (resumed.records_made, resumed.shards_taken_over) == (30, 0)
+    assert resumed.notes == ("train-00000 is made again: made by siggen 0.0.9 (fingerprint 0123456789abcdef)",)
+    assert file_bytes(tmp_path) == file_bytes(reference)
+
+
+def test_the_maker_stands_in_every_shard_and_in_the_manifest(reference: Path) -> None:
+    own = environment()["fingerprint"]
+    for file in (reference / "data").iterdir():
+        assert about_of(unpacked(file.read_bytes()))["fingerprint"] == own
+    assert open_set(reference).manifest["environment"]["fingerprint"] == own
 
 
 def test_half_written_files_of_a_killed_run_are_removed(tmp_path: Path) -> None:
@@ -145,47 +184,23 @@ def test_a_folder_in_use_is_refused(tmp_path: Path) -> None:
         write_fake_set(tmp_path)
 
 
-def test_run_json_holds_the_speed_and_carries_its_own_digest(tmp_path: Path) -> None:
-    write_fake_set(tmp_path)
-    run = unsealed("run.json", (tmp_path / "run.json").read_bytes())
-    assert run["records_made"] == 30
-    assert run["records_per_s"] > 0
-    assert run["peak_memory_bytes"]["parent"] > 0
-    assert run["environment"] == json.loads((tmp_path / "shards/test-00000.json").read_text())["environment"]
-
-
-def test_a_set_does_not_depend_on_the_engine(tmp_path: Path) -> None:
-    class Backwards:
-        """Gives the results of every two tasks in the wrong order."""
-
-        workers = 2
-
-        def map(self, function, tasks):
-            waiting = []
-            for index, task in enumerate(tasks):
-                waiting.append((index, function(task)))
-                if len(waiting) == 2:
-                    yield from reversed(waiting)
-                    waiting.clear()
-            yield from waiting
-
-    made = {}
-    for name, engine in (("named", "serial"), ("object", Backwards())):
-        with fake_physics():
-            generate(fake_config(), tmp_path / name, engine=engine)
-        made[name] = file_bytes(tmp_path / name)
-    assert made["named"] == made["object"]
+@pytest.mark.parametrize("threads", [1, 3])
+def test_a_set_does_not_depend_on_the_executor(reference: Path, tmp_path: Path, threads: int) -> None:
+    with ThreadPoolExecutor(threads) as mine:
+        write_fake_set(tmp_path, executor=mine)
+        assert mine.submit(abs, -1).result() == 1  # whoever gave it ends it
+    assert file_bytes(tmp_path) == file_bytes(reference)
 
 
 def test_a_run_that_loses_more_of_a_state_than_allowed_stops_keeps_its_shards_and_goes_on_when_told(
     reference: Path, tmp_path: Path
 ) -> None:
-    """Of 10 records of `slight` the second failure, record 8, is one too many for a tenth; shard 0 stays."""
+    """Of 10 records of `slight` the second failure, record 8, is one too many for a tenth; both shards stay."""
     with pytest.raises(LossError, match=r"of the 10 records of state slight 2 could not.*share of 0\.1.*Record 3: div"):
         write_fake_set(tmp_path, simulation=simulate_with_failures, allowed_loss=0.1)
-    assert (tmp_path / "shards/train-00000.json").exists()
+    assert (tmp_path / "data/train-00000.parquet").exists()
     assert not (tmp_path / "manifest.json").exists()
-    # resumed with the same share it stops again, once shard 1 is whole from what was kept of it
+    # resumed with the same share it stops again
     with pytest.raises(LossError, match="state slight 2"):
         write_fake_set(tmp_path, simulation=simulate_with_failures, allowed_loss=0.1)
     generation = write_fake_set(tmp_path, simulation=simulate_with_failures, allowed_loss=0.2)
@@ -203,5 +218,5 @@ def test_an_extension_stops_at_the_loss_of_the_whole_set(tmp_path: Path) -> None
         generate(fake_config(), tmp_path, 0, allowed_loss=1.0)
     with fake_physics(simulate_none):
         with pytest.raises(LossError, match="of the 12 records of state slight 4"):
-            extend(tmp_path, "+1", workers=0, allowed_loss=0.3)
-        assert len(extend(tmp_path, "+1", workers=0, allowed_loss=0.4).failures) == 9
+            generate(fake_config(specimens=6), tmp_path, 0, allowed_loss=0.3)
+        assert len(generate(fake_config(specimens=6), tmp_path, 0, allowed_loss=0.4).failures) == 9

@@ -18,7 +18,6 @@ from siggen.cli.app import app
 from siggen.errors import ConfigError, UsageError
 from siggen.gearbox.description import class_words
 from siggen.gearbox.plan import plan
-from siggen.sets.extension import extend
 from tests.config.minimal import by_name, minimal
 
 LIFE: dict[str, Any] = {"reference_torque_nm": 60.0, "scale": 0.03, "interval_h": 1.2, "most": 6, "removed_share": 0.0}
@@ -88,7 +87,7 @@ def test_ids_have_a_fixed_stride_and_tables_tell_the_same_truth_as_labels(fleet:
 @pytest.mark.slow
 def test_more_gearboxes_leave_those_that_exist_as_they_are(fleet: Path, tmp_path: Path) -> None:
     siggen.generate(load_config({**lives(), "specimens": 1}), tmp_path / "grown", workers=0)
-    extend(tmp_path / "grown", "+1", 0)
+    siggen.generate(load_config(lives()), tmp_path / "grown", workers=0)
     assert rows(tmp_path / "grown") == rows(fleet)
     for table in ("units", "inspections", "teeth", "pits", "outlook", "debris", "pictures"):
         first, second = (siggen.open(folder).life(table).to_pylist() for folder in (tmp_path / "grown", fleet))

@@ -24,7 +24,7 @@ def test_a_first_gearbox_that_is_refused_costs_its_own_records_alone(
 
     monkeypatch.setattr(design, "draw_specimen", refused)
     config = siggen.load_config("quickstart", ["specimens=2", "duration_s=0.05", "splits.by=gearbox"])
-    siggen.generate(config, tmp_path / "set", engine="serial", allowed_loss=0.9)
+    siggen.generate(config, tmp_path / "set", executor="serial", allowed_loss=0.9)
     labels = siggen.open(tmp_path / "set").labels().to_pylist()
     assert {row["specimen_id"] for row in labels} == {1}
     assert len(labels) == len(config.config.states)

@@ -1,4 +1,4 @@
-"""What a run tells: events with the documented fields, whatever the engine, and where its time went."""
+"""What a run tells: events with the documented fields, whatever the executor, and where its time went."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_every_event_has_the_documented_fields_and_is_json(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize(
-    ("engine", "workers"),
+    ("executor", "workers"),
     [
         pytest.param("processes", 2, marks=pytest.mark.slow),
         pytest.param("dask", 2, marks=pytest.mark.slow),
@@ -76,15 +76,15 @@ def test_every_event_has_the_documented_fields_and_is_json(tmp_path: Path) -> No
     ],
 )
 @pytest.mark.filterwarnings("ignore")
-def test_every_engine_tells_the_same(tmp_path: Path, engine: str, workers: int) -> None:
+def test_every_executor_tells_the_same(tmp_path: Path, executor: str, workers: int) -> None:
     for package, name in (("distributed", "dask"), ("ray", "ray")):
-        if engine == name and importlib.util.find_spec(package) is None:
+        if executor == name and importlib.util.find_spec(package) is None:
             pytest.skip(f"{package} is not installed")
-    events = told(tmp_path, engine=engine, workers=workers, simulation=simulate_with_failures)
+    events = told(tmp_path, executor=executor, workers=workers, simulation=simulate_with_failures)
     serial = told(tmp_path.with_name(f"{tmp_path.name}_serial"), simulation=simulate_with_failures)
     assert [run[place]["event"] for run in (events, serial) for place in (0, -1)] == ["run_started", "run_ended"] * 2
     # shards are told as they are there: how many records are done by then is nobody's promise
-    timing = {"time", "seconds", "records_per_s", "left_s", "stages", "path", "engine", "workers", "records_done"}
+    timing = {"time", "seconds", "records_per_s", "left_s", "stages", "path", "executor", "workers", "records_done"}
     kept = [[{key: value for key, value in e.items() if key not in timing} for e in run] for run in (events, serial)]
     assert sorted(map(str, kept[0])) == sorted(map(str, kept[1]))
     assert of(events, "shard_done")[-1]["records_done"] == 30
@@ -132,7 +132,7 @@ def test_a_log_holds_one_object_per_line_is_added_to_and_never_ends_a_run(tmp_pa
 
 
 @pytest.mark.parametrize("said", ["set", "set/config.yaml", "set/new.log", "aside/../set/new.log"])
-@pytest.mark.parametrize("command", [["generate", "quickstart", "--out"], ["extend", "--specimens", "+1"]])
+@pytest.mark.parametrize("command", [["generate", "quickstart", "--out"]])
 def test_a_log_in_the_folder_of_the_set_is_refused_and_nothing_is_written(
     command: list[str], said: str, tmp_path: Path
 ) -> None:

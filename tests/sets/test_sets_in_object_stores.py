@@ -12,13 +12,10 @@ import pytest
 
 import siggen
 from siggen.dataset.object_store import ObjectStore
-from siggen.dataset.storage import LocalFolder, copy_object, sha256
+from siggen.dataset.storage import LocalFolder
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import DatasetError, EngineError
-from siggen.gearbox import plan
-from siggen.sets.extension import extend
 from siggen.sets.generation import generate
-from siggen.sets.parts import generate_part, merge
 from siggen.sets.verification import verify
 from tests.dataset.fake_set import (
     FAKE_FILES,
@@ -28,6 +25,7 @@ from tests.dataset.fake_set import (
     file_bytes,
     simulate,
     simulate_with_a_bug,
+    small_shards,
     write_fake_set,
 )
 from tests.dataset.s3_server import BUCKET, digests, object_bytes, s3_server
@@ -37,16 +35,9 @@ SHORT = ("duration_s=0.5", "specimens=1", "states={healthy: {}}", "repeats=1")
 
 
 @pytest.fixture(autouse=True)
-def served(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
-    (tmp_path / "temporary").mkdir()
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "temporary"))
+def served(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     with s3_server(monkeypatch):
         yield
-    assert list((tmp_path / "temporary").iterdir()) == []
-
-
-def small_shards():
-    return patch.multiple(plan, SHARD_BYTES=12_000, GROUP_CHANNEL_BYTES=4_096)
 
 
 def write(place: str, simulation=simulate, **changes):
@@ -56,18 +47,16 @@ def write(place: str, simulation=simulate, **changes):
 
 def test_a_set_has_the_bytes_of_one_in_a_folder_and_is_verified_and_read_there(tmp_path: Path) -> None:
     puts: list[str] = []
-    real = ObjectStore._writing
+    real = ObjectStore.put
 
-    def counted(store: ObjectStore, name: str):
+    def counted(store: ObjectStore, name: str, content: bytes) -> None:
         puts.append(name)
-        return real(store, name)
+        real(store, name, content)
 
-    with patch.object(ObjectStore, "_writing", counted):
+    with patch.object(ObjectStore, "put", counted):
         made = write(PLACE)
     assert str(made.path) == PLACE
-    # one PUT each; config.yaml begins and ends the work, and excerpts of shards are deleted at once
-    excerpts = [f"excerpts/{Path(name).stem}" for name in FAKE_FILES if name.startswith("data/")]
-    assert sorted(puts) == sorted([*FAKE_FILES, "config.yaml", *excerpts, "excerpts"])
+    assert sorted(puts) == sorted([*FAKE_FILES, "config.yaml"])  # one each; config.yaml begins and ends the work
     assert puts[-1] == "manifest.json"
     copy_fake_set(tmp_path / "set")
     assert digests(object_bytes(PLACE)) == digests(file_bytes(tmp_path / "set"))
@@ -88,7 +77,7 @@ def test_a_run_that_stopped_is_continued_and_a_damaged_shard_is_made_again(tmp_p
     assert not store.exists("manifest.json")
     whole = store.get("data/train-00000.parquet")
     store.put("data/train-00000.parquet", whole[:100] + bytes([whole[100] ^ 1]) + whole[101:])
-    kept = len(store.names("shards"))
+    kept = len(store.names("data"))
     assert write(PLACE).shards_taken_over == kept - 1
     copy_fake_set(tmp_path / "set")
     assert digests(object_bytes(PLACE)) == digests(file_bytes(tmp_path / "set"))
@@ -99,27 +88,35 @@ def test_a_changed_bit_is_found_by_the_reader_in_words() -> None:
     store = storage_at(PLACE)
     whole = store.get("data/train-00001.parquet")
     store.put("data/train-00001.parquet", whole[:500] + bytes([whole[500] ^ 4]) + whole[501:])
-    with pytest.raises(DatasetError, match=rf"{PLACE}/data/train-00001.parquet cannot be read .*their checksum"):
+    with pytest.raises(DatasetError, match=rf"{PLACE}/data/train-00001.parquet is not the promised file .*SHA-256"):
         list(siggen.open(PLACE).records())
 
 
-@pytest.mark.slow
-def test_parts_are_merged_and_a_set_is_extended_there(tmp_path: Path) -> None:
-    parts = [f"s3://{BUCKET}/parts/{number}" for number in (1, 2)]
-    with fake_physics(), small_shards():
-        for number, place in enumerate(parts, 1):
-            generate_part(fake_config(), place, (number, 2), 0)
-        merge(parts, PLACE)
-        assert digests(object_bytes(PLACE)) == digests(file_bytes(write_fake_set(tmp_path / "set").path))
-        extend(PLACE, "+1", 0)
-        extend(tmp_path / "set", "+1", 0)
+def test_parts_make_a_set_that_grows_there(tmp_path: Path) -> None:
+    for number in (1, 2):
+        write_fake_set(PLACE, part=(number, 2))
+    assert write_fake_set(PLACE).records_made == 0
+    for place in (PLACE, tmp_path / "set"):
+        write_fake_set(place)
+        write_fake_set(place, fake_config(specimens=6))
     assert digests(object_bytes(PLACE)) == digests(file_bytes(tmp_path / "set"))
+
+
+def test_a_random_record_is_one_request(monkeypatch: pytest.MonkeyPatch) -> None:
+    write(PLACE)
+    dataset, asked = siggen.open(PLACE), []
+    dataset.labels()
+    real = ObjectStore.get
+    monkeypatch.setattr(ObjectStore, "get", lambda store, *said: asked.append(said[0]) or real(store, *said))
+    for record_id in (7, 8, 20):
+        dataset.record(record_id)
+    assert len(asked) == 2  # 7 and 8 are of one gearbox, whose shard stays decoded
 
 
 def upload(folder: Path, place: str) -> str:
     source, target = LocalFolder(folder), storage_at(place)
     for name in source.names():
-        copy_object(source, name, target, sha256(source, name))
+        target.put(name, source.get(name))
     return place
 
 
@@ -156,11 +153,11 @@ def test_commands_take_a_place_for_a_folder(
     assert f"s3://{BUCKET}/none: there is no data set here" in capsys.readouterr().err
 
 
-def test_a_set_that_went_to_a_worker_gives_its_row_groups_there(tmp_path: Path) -> None:
-    """What the loader does: `WindowStream` sends the set to processes, which read row groups in any order."""
+def test_a_set_that_went_to_a_worker_gives_its_shards_there(tmp_path: Path) -> None:
+    """What the loader does: `WindowStream` sends the set to processes, which read shards in any order."""
     write(str(tmp_path / "set"))
     here = siggen.open(tmp_path / "set")
     there = pickle.loads(pickle.dumps(siggen.open(upload(tmp_path / "set", PLACE))))
-    assert here.row_groups() == there.row_groups()
-    for group in here.row_groups("train")[::-1]:
-        assert there.row_group(group).equals(here.row_group(group))
+    assert here.shards() == there.shards()
+    for shard in here.shards("train")[::-1]:
+        assert there.shard_rows(shard).equals(here.shard_rows(shard))

@@ -8,6 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from typer.testing import CliRunner
 
@@ -19,6 +21,7 @@ from siggen.errors import EXIT_MISMATCH, DatasetError
 from siggen.gearbox.design import SetDesign
 from siggen.sets.verification import CLOSE, EXACT, verify
 from tests.dataset.fake_set import FAKE_FILES, STEP_M_S2, simulate, verify_fake_set, write_fake_set
+from tests.dataset.resealed_set import reseal
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +71,7 @@ def test_the_command_ends_with_4_after_a_flipped_byte_in_any_file(folder: Path, 
     assert name in result.stderr
 
 
-@pytest.mark.parametrize("name", [name for name in FAKE_FILES if name not in ("manifest.json", "run.json")])
+@pytest.mark.parametrize("name", [name for name in FAKE_FILES if name != "manifest.json"])
 def test_missing_and_truncated_files_are_found(folder: Path, name: str) -> None:
     path = folder / name
     path.write_bytes(path.read_bytes()[:-1])
@@ -77,18 +80,15 @@ def test_missing_and_truncated_files_are_found(folder: Path, name: str) -> None:
     assert [(m.what, m.problem) for m in verify(folder).mismatches] == [(name, "missing")]
 
 
-@pytest.mark.parametrize(
-    "name", ["data/train-00003.parquet", "shards/notes.txt", "metadata/old/train.parquet", "damage/x"]
-)
+@pytest.mark.parametrize("name", ["data/train-00003.parquet", "internals/notes.txt", "life/old/units.parquet"])
 def test_a_foreign_file_among_the_rows_is_found(folder: Path, name: str) -> None:
-    (folder / name).parent.mkdir(exist_ok=True)
+    (folder / name).parent.mkdir(parents=True, exist_ok=True)
     (folder / name).write_bytes(b"x")
     assert [(m.what, m.problem) for m in verify(folder).mismatches] == [(name, "not part of the set")]
 
 
-def test_files_beside_the_set_and_a_set_without_run_json_are_fine(folder: Path) -> None:
+def test_files_beside_the_set_are_fine(folder: Path) -> None:
     (folder / ".gitattributes").write_text("*.parquet filter=lfs")
-    (folder / "run.json").unlink()
     assert verify(folder).mismatches == ()
 
 
@@ -169,3 +169,14 @@ def test_records_are_not_simulated_when_files_differ(folder: Path) -> None:
     found = verify_fake_set(folder, 3)
     assert found.records == ()
     assert found.comparison == "none, since files differ"
+
+
+def test_labels_that_a_stranger_sealed_beside_other_rows_are_found(folder: Path) -> None:
+    table = pq.read_table(folder / "labels.parquet")
+    place = table.schema.get_field_index("torque_nm")
+    other = pa.array([61.0] * table.num_rows)
+    pq.write_table(table.set_column(place, table.schema.field(place), other), folder / "labels.parquet")
+    reseal(folder)
+    found = verify(folder).mismatches
+    assert len(found) == 5
+    assert {one.problem for one in found} == {"says something else of its records than labels.parquet"}

@@ -18,11 +18,11 @@ from tests.walks.walking import run
 
 WRITERS = [name for name, line in LINES.items() if line.writes]
 QUICK = {
-    *("siggen generate", "siggen extend", "siggen simulate", "siggen inspect flank"),
+    *("siggen generate", "siggen simulate", "siggen inspect flank"),
     *("siggen-diagnostics score", "siggen-diagnostics explore"),
 }
 """Sets, tables, pictures, pages: each kind of file once."""
-RUN_FILES = {"run.json", "audit.json"}
+RUN_FILES = {"audit.json"}
 """They tell times, so their sizes differ from run to run."""
 KEPT = "_table/"
 """Tables of indicators beside a set: where they do not fit, a command computes without them and says so."""

@@ -35,7 +35,7 @@ def strange(good_set: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
             pc.if_else(pc.equal(states, "severe"), HOSTILE, states).cast(states.type),
         )
 
-    rewritten(folder, renamed, ("data", "metadata"))
+    rewritten(folder, renamed, ("data", "labels"))
     return folder
 
 

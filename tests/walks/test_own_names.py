@@ -89,7 +89,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "mill.yaml").write_text(
         yaml_text(mill(**COMMON, sensors=by_name(sensors), states=by_name(states("eva"))))
     )
-    printed = run("siggen", "generate", folder / "mill.yaml", "--out", folder / "set", "--engine", "serial")
+    printed = run("siggen", "generate", folder / "mill.yaml", "--out", folder / "set", "--executor", "serial")
     assert "pinion" not in OF_THE_USER.sub("", printed)
     return folder
 

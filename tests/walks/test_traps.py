@@ -8,11 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from siggen.engines.processes import ProcessEngine
-from tests.engines import tasks
+from siggen.workers.choice import workers_of
+from siggen.workers.tasks import results
 from tests.every_command import LEAVES
 from tests.walks.lines import LINES, lay, lines
 from tests.walks.walking import fresh
+from tests.workers import tasks
 
 EXECUTED = "executed"
 PACKAGES = {"dask": "distributed", "ray": "ray"}
@@ -59,13 +60,13 @@ def test_no_command_takes_a_module_from_the_folder(
     [
         "siggen-diagnostics indicators set --out table",
         "siggen-diagnostics explore set --out look.html",
-        "siggen generate short.yaml --engine dask --workers 2 --out new",
-        "siggen generate short.yaml --engine ray --workers 2 --out new",
+        "siggen generate short.yaml --executor dask --workers 2 --out new",
+        "siggen generate short.yaml --executor ray --workers 2 --out new",
     ],
 )
 def test_nor_do_other_workers(line: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
-    for engine, package in PACKAGES.items():
-        if f"--engine {engine}" in line:
+    for name, package in PACKAGES.items():
+        if f"--executor {name}" in line:
             pytest.importorskip(package)
     assert not executed_by(line, tmp_path, tmp_path_factory)
 
@@ -75,5 +76,5 @@ def test_workers_of_a_script_import_beside_the_script_and_not_from_the_folder(
 ) -> None:
     lay_traps(tmp_path)
     monkeypatch.chdir(tmp_path)
-    assert dict(ProcessEngine(1).map(tasks.square, range(3))) == {0: 0, 1: 1, 2: 4}
+    assert dict(results(workers_of(None, 1), tasks.square, range(3))) == {0: 0, 1: 1, 2: 4}
     assert not executed(tmp_path)

@@ -33,7 +33,7 @@ def rig(tmp_path_factory: pytest.TempPathFactory) -> Path:
     raw["states"] = {**raw["states"], "healthy_again": None, "moderate": None, "sham": None}
     raw["states"]["severe"] |= {"grows": "slight"}
     (folder / "rig.yaml").write_text(yaml.safe_dump(raw, sort_keys=False))
-    walk(folder, f"siggen generate rig.yaml {SIZE} --out set --engine serial")
+    walk(folder, f"siggen generate rig.yaml {SIZE} --out set --executor serial")
     return folder
 
 

@@ -167,7 +167,7 @@ def shown(made: Made, part: str) -> tuple[Dataset, Dataset, list[tuple[Row, Row]
 @pytest.mark.parametrize("part", PARTS)
 def test_a_part_shows_each_gearbox_up_to_an_inspection_and_nothing_of_what_comes_later(made: Made, part: str) -> None:
     published, simulated, pairs = shown(made, part)
-    assert sorted(path.name for path in (Path(published.path) / "life").iterdir()) == [
+    assert sorted(path.stem for path in (Path(published.path) / "life").iterdir()) == [
         "debris",
         "inspections",
         "pictures",

@@ -205,7 +205,7 @@ def test_all_that_is_written_says_the_users_words_alone(folder: Path, said: str)
 def test_the_result_generates_a_set(folder: Path, said: str) -> None:
     few = ["--set", "specimens=1", "--set", "duration_s=0.5"]
     made = command(
-        "siggen", "generate", str(folder / "mine.yaml"), "--out", str(folder / "set"), "--engine", "serial", *few
+        "siggen", "generate", str(folder / "mine.yaml"), "--out", str(folder / "set"), "--executor", "serial", *few
     )
     assert made.returncode == 0, made.stdout + made.stderr
     record = siggen.open(folder / "set").record(1)

@@ -40,7 +40,7 @@ def ran(package: str, *options: str) -> str:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("mixed")
     (place / "mixed.yaml").write_text(MIXED, encoding="utf-8")
-    ran("siggen", "generate", str(place / "mixed.yaml"), "--out", str(place / "set"), "--engine", "serial")
+    ran("siggen", "generate", str(place / "mixed.yaml"), "--out", str(place / "set"), "--executor", "serial")
     return place / "set"
 
 

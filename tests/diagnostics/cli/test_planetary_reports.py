@@ -42,7 +42,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     split = {"train": 10, "validation": 5, "test": 5}
     raw = planets(specimens=4, fs_hz=12_800.0, duration_s=2.0, sensors=by_name(sensors), splits=split)
     (folder / "set.yaml").write_text(yaml.safe_dump(raw, sort_keys=False), encoding="utf-8")
-    done = run("siggen", "generate", str(folder / "set.yaml"), "--out", str(folder / "set"), "--engine", "serial")
+    done = run("siggen", "generate", str(folder / "set.yaml"), "--out", str(folder / "set"), "--executor", "serial")
     assert done.returncode == 0, done.stdout + done.stderr
     done = run("diagnostics", "report", str(folder / "set"), "--out", str(folder / "report"), "--no-cnn")
     assert done.returncode == 0, done.stdout + done.stderr

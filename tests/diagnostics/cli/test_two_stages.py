@@ -48,7 +48,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     sensors = [{"name": "lid", "place": "gear_bearing"}]
     raw = staged(specimens=8, fs_hz=12_800.0, duration_s=1.2, sensors=by_name(sensors), states=by_name(STATES))
     (folder / "two.yaml").write_text(yaml.safe_dump(raw, sort_keys=False), encoding="utf-8")
-    done = run("siggen", "generate", str(folder / "two.yaml"), "--out", str(folder / "set"), "--engine", "serial")
+    done = run("siggen", "generate", str(folder / "two.yaml"), "--out", str(folder / "set"), "--executor", "serial")
     assert done.returncode == 0, done.stdout + done.stderr
     return folder
 
@@ -106,7 +106,9 @@ def test_classifiers_take_features_of_both_meshes_and_predict_refuses_them(made:
 def test_a_report_takes_an_accelerometer_a_washer_and_an_encoder_of_the_third_shaft(tmp_path: Path) -> None:
     raw = staged(specimens=3, fs_hz=12_800.0, duration_s=0.3, sensors=by_name(THIRD_SHAFT), states=by_name(STATES))
     (tmp_path / "third.yaml").write_text(yaml.safe_dump(raw, sort_keys=False), encoding="utf-8")
-    done = run("siggen", "generate", str(tmp_path / "third.yaml"), "--out", str(tmp_path / "set"), "--engine", "serial")
+    done = run(
+        "siggen", "generate", str(tmp_path / "third.yaml"), "--out", str(tmp_path / "set"), "--executor", "serial"
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     done = run("diagnostics", "report", str(tmp_path / "set"), "--out", str(tmp_path / "report"), "--no-cnn")
     assert done.returncode == 0, done.stdout + done.stderr

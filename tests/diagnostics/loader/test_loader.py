@@ -148,7 +148,7 @@ def test_the_cache_gives_the_same_windows_and_is_read_without_the_set(
     def unreadable(*_: Any) -> None:
         raise AssertionError("the set was read although the cache is complete")
 
-    monkeypatch.setattr(type(dataset), "row_group", unreadable)
+    monkeypatch.setattr(type(dataset), "shard_rows", unreadable)
     assert contents(again) == expected
 
 

@@ -12,29 +12,29 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from siggen.dataset.seal import sealed, unsealed
-from siggen.dataset.shard import TableFile
+from siggen.dataset.shard import packed
 from tests.dataset.resealed_set import reseal
 from tests.diagnostics.planted.leak import Leak, Signals
 
 
 def planted_copy(source: Path, folder: Path, leak: Leak) -> Path:
-    """Copy a set into a new folder, plant a leak, seal sidecars, checksums and manifest again; return the folder."""
+    """Copy a set into a new folder, plant a leak, seal its manifest again; return the folder."""
     shutil.copytree(source, folder)
     names = channel_columns(folder)
     for file in sorted((folder / "data").glob("*.parquet")):
         _rewrite(file, planted(pq.read_table(file), leak, names, _fs_hz(folder)))
-    for file in sorted((folder / "metadata").glob("*.parquet")):
-        rows = pq.read_table(file)
-        leaky = leak.labels(rows, damaged(rows)) if leak.labels else rows
-        _rewrite(file, leaky.take(pc.index_in(_ids(folder, file.stem), leaky["record_id"].combine_chunks())))
+    file = folder / "labels.parquet"
+    rows = pq.read_table(file)
+    leaky = leak.labels(rows, damaged(rows)) if leak.labels else rows
+    _rewrite(file, leaky.take(pc.index_in(_ids(folder), leaky["record_id"].combine_chunks())))
     _list_columns(folder)
     reseal(folder)
     return folder
 
 
-def _ids(folder: Path, split: str) -> pa.ChunkedArray:
-    """Return the record ids of a split in the order of its signals."""
-    files = sorted((folder / "data").glob(f"{split}-*.parquet"))
+def _ids(folder: Path) -> pa.ChunkedArray:
+    """Return the record ids in the order of the signals."""
+    files = [folder / f"data/{shard['shard']}.parquet" for shard in _manifest(folder)["shards"]]
     return pa.concat_tables([pq.read_table(file, columns=["record_id"]) for file in files])["record_id"]
 
 
@@ -109,17 +109,14 @@ def converter_step(samples: np.ndarray) -> float:
 
 def _rewrite(path: Path, rows: pa.Table) -> None:
     """Write rows in the place of those of a file, as siggen does."""
-    table = TableFile(path, path.name, rows.schema, pq.read_metadata(path).row_group(0).num_rows)
-    for batch in rows.to_batches():
-        table.add(batch)
-    table.finish()
+    path.write_bytes(packed(rows))
 
 
 def _list_columns(folder: Path) -> None:
     """Give columns that are new their place among those of the manifest."""
     manifest = _manifest(folder)
     known = {column["name"] for column in manifest["columns"]}
-    schema = pq.read_schema(next(iter(sorted((folder / "metadata").glob("*.parquet")))))
+    schema = pq.read_schema(folder / "labels.parquet")
     for index, field in enumerate(schema):
         if field.name not in known:
             role = field.metadata[b"role"].decode()

@@ -29,7 +29,7 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_nothing_planted_leaves_all_signals_and_labels_byte_for_byte(source: Path, tmp_path: Path) -> None:
     copy = planted_copy(source, tmp_path / "copy", Leak("", ""))
     before, after = file_bytes(source), file_bytes(copy)
-    assert {name for name in before if before[name] != after[name]} <= {"checksums.parquet", "manifest.json"}
+    assert {name for name in before if before[name] != after[name]} <= {"labels.parquet", "manifest.json"}
 
 
 @pytest.mark.parametrize(
@@ -97,7 +97,7 @@ def _differ(before: pa.Table, after: pa.Table, name: str, row: int) -> bool:
 def changed_columns(source: Path, copy: Path) -> set[str]:
     """Return names of columns of data or labels that are not the same in both sets."""
     changed: set[str] = set()
-    for kind in ("data", "metadata"):
+    for kind in ("data", "labels"):
         before, after = rows(source, kind), rows(copy, kind)
         changed |= {n for n in after.column_names if n not in before.column_names or before[n] != after[n]}
     return changed
@@ -105,4 +105,5 @@ def changed_columns(source: Path, copy: Path) -> set[str]:
 
 def rows(folder: Path, kind: str) -> pa.Table:
     """Return all rows of the data or of the labels of a set."""
-    return pa.concat_tables([pq.read_table(file) for file in sorted((folder / kind).glob("*.parquet"))])
+    files = sorted((folder / "data").glob("*.parquet")) if kind == "data" else [folder / "labels.parquet"]
+    return pa.concat_tables([pq.read_table(file) for file in files])

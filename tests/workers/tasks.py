@@ -32,15 +32,6 @@ def die_once(task: str) -> str:
     return task
 
 
-def no_memory_once(task: str) -> str:
-    """Be refused memory unless the marker file says that this happened before."""
-    marker = Path(task)
-    if not marker.exists():
-        marker.touch()
-        raise MemoryError
-    return task
-
-
 def no_memory(task: int) -> int:
     raise MemoryError
 
@@ -77,3 +68,7 @@ def busy(task: int) -> int:
         (Path(folder) / str(os.getpid())).touch()
         re.match(r"(a?){32}a{32}", "a" * 32)
     return task
+
+
+def busy_but_first(task: int) -> int:
+    return busy(task) if task else task

@@ -14,26 +14,28 @@ import pytest
 
 DRIVER = """
 import sys
-from siggen.engines.registry import engine_of
-from tests.engines.tasks import busy
+from siggen.workers.choice import workers_of
+from siggen.workers.tasks import results
+from tests.workers.tasks import busy
 if __name__ == "__main__":
-    list(engine_of(sys.argv[1], 2).map(busy, range(8)))
+    list(results(workers_of(sys.argv[1], 2), busy, range(8)))
 """
 STARTING = """
 import os, sys
-from siggen.engines.registry import engine_of
+from siggen.workers.choice import workers_of
+from siggen.workers.tasks import results
 if __name__ == "__main__":
     os.environ["SIGGEN_TEST_DRIVER"] = str(os.getpid())
-    from tests.engines.slow_to_import import same
-    list(engine_of(sys.argv[1], 2).map(same, range(8)))
+    from tests.workers.slow_to_import import same
+    list(results(workers_of(sys.argv[1], 2), same, range(8)))
 """
 LIBRARY = """
 import os
 from multiprocessing import get_context
-from siggen.engines.orphan import ending_with_this
+from siggen.workers.orphan import ending_with_this
 if __name__ == "__main__":
     os.environ["SIGGEN_TEST_DRIVER"] = str(os.getpid())
-    from tests.engines.slow_to_import import same
+    from tests.workers.slow_to_import import same
     with ending_with_this():
         started = [get_context("spawn").Process(target=same, args=(1,)) for _ in range(2)]
         for one in started:
@@ -42,7 +44,7 @@ if __name__ == "__main__":
             one.join()
 """
 
-ENGINES = [
+EXECUTORS = [
     "processes",
     pytest.param("dask", marks=pytest.mark.slow),
     pytest.param("ray", marks=pytest.mark.slow),
@@ -65,10 +67,10 @@ def wait_until(condition, seconds: float) -> bool:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
-@pytest.mark.parametrize("engine", ENGINES)
-def test_busy_workers_end_with_their_driver(engine: str, tmp_path: Path) -> None:
-    pytest.importorskip({"dask": "distributed"}.get(engine, engine if engine == "ray" else "siggen"))
-    assert_workers_end_with_their_driver(DRIVER, engine, tmp_path)
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_busy_workers_end_with_their_driver(executor: str, tmp_path: Path) -> None:
+    pytest.importorskip({"dask": "distributed"}.get(executor, executor if executor == "ray" else "siggen"))
+    assert_workers_end_with_their_driver(DRIVER, executor, tmp_path)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
@@ -81,12 +83,12 @@ def test_processes_of_a_library_that_still_import_end_with_their_driver(tmp_path
     assert_workers_end_with_their_driver(LIBRARY, "none", tmp_path)
 
 
-def assert_workers_end_with_their_driver(code: str, engine: str, tmp_path: Path) -> None:
+def assert_workers_end_with_their_driver(code: str, executor: str, tmp_path: Path) -> None:
     script = tmp_path / "driver.py"
     script.write_text(code)
     (tmp_path / "busy").mkdir()
     environment = {**os.environ, "SIGGEN_TEST_BUSY": str(tmp_path / "busy"), "PYTHONPATH": os.pathsep.join(sys.path)}
-    command = [sys.executable, script, engine]
+    command = [sys.executable, script, executor]
     driver = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL, start_new_session=True)
     workers: list[int] = []
     try:

@@ -1,28 +1,25 @@
-"""Options of commands that simulate: who runs the work, on which cluster, and how many records may be lost."""
+"""Options of a command that simulates: who runs the work, on which cluster, and how many records may be lost."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-if TYPE_CHECKING:
-    from siggen.engines.protocol import Engine
-
 
 @dataclass(frozen=True, slots=True)
-class EngineOptions:
+class WorkerOptions:
     """How the records are made."""
 
     workers: Annotated[
         int | None,
         typer.Option("--workers", min=0, help="Worker processes; by default one per core. 0: none, to debug."),
     ] = None
-    engine: Annotated[
+    executor: Annotated[
         str | None,
         typer.Option(
-            "--engine", help="Who runs the work: serial, processes (the default), dask or ray.", metavar="NAME"
+            "--executor", help="Who runs the work: serial, processes (the default), dask or ray.", metavar="NAME"
         ),
     ] = None
     address: Annotated[
@@ -41,11 +38,3 @@ class EngineOptions:
             metavar="SHARE",
         ),
     ] = 0.1
-
-    def runner(self) -> tuple[str | Engine | None, int | None]:
-        """Return the engine, and the workers that it is to take; one on a cluster knows them already."""
-        from siggen.engines.registry import engine_of
-
-        if self.address is None:
-            return self.engine, self.workers
-        return engine_of(self.engine, self.workers, self.address), None

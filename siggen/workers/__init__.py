@@ -1,0 +1,1 @@
+"""Who runs independent tasks: any executor of `concurrent.futures`."""
