@@ -213,14 +213,22 @@ class PairLaw:
         if radius <= 1e-15 or abs(lift) >= RAYS[-1] * (radius + approach):
             return Spring()
         place = lift / (radius + approach)
-        ray = max(k for k in range(len(RAYS) - 1) if RAYS[k] <= place)
-        low, high = (self.along(pair, radius, k) for k in (ray, ray + 1))
-        width = RAYS[ray + 1] - RAYS[ray]
-        x = (place - RAYS[ray]) / width
-        # Hermite's cubic in the place between two rays, for the energy and its derivatives to the radius.
-        ends = ((low[0][k], low[1][k], high[0][k], high[1][k]) for k in range(3))
-        found = [cubic((a, b), (c, d), x * width, width) for a, b, c, d in ends]
-        (_, w_p, w_pp), (w_r, w_rp, _), (w_rr, _, _) = found
+        if abs(place) <= NEAR:
+            (_, w_r, w_rr), (w_p, w_rp, _), w_pp, shares = self.beside(pair, radius, place)
+        else:
+            ray = max(k for k in range(len(RAYS) - 1) if RAYS[k] <= place)
+            ends = [(RAYS[k], *self.along(pair, radius, k)) for k in (ray, ray + 1) if RAYS[k] != 0.0]
+            if len(ends) == 1:  # the ray beside that without tilt is where this one begins
+                at = math.copysign(NEAR, place)
+                ends.append((at, *self.beside(pair, radius, at)))
+                ends[1] = (*ends[1][:3], ends[1][4])
+                ends.sort(key=lambda end: end[0])
+            (first, low, low_across, low_shares), (second, high, high_across, high_shares) = ends
+            width, x = second - first, (place - first) / (second - first)
+            # Hermite's cubic in the place between two rays, for the energy and its derivatives to the radius.
+            found = [cubic((low[k], low_across[k]), (high[k], high_across[k]), x * width, width) for k in range(3)]
+            (_, w_p, w_pp), (w_r, w_rp, _), (w_rr, _, _) = found
+            shares = [a * (1.0 - x) + b * x for a, b in zip(low_shares, high_shares, strict=True)]
         turn = 0.5 * (1.0 + place**2)  # dp/dφ
         per_angle, per_angle_2 = turn * w_p, turn * (turn * w_pp + place * w_p)
         # Second derivatives along and across the radius, cut to what a convex energy has.
@@ -235,8 +243,31 @@ class PairLaw:
         spring.moment = half * (s * w_r + c * per_angle / radius)
         spring.cross = half * (c * s * (along - across) + (c * c - s * s) * mixed)
         spring.turning = half**2 * (s * s * along + 2.0 * c * s * mixed + c * c * across)
-        spring.carrying, spring.rough = (a * (1.0 - x) + b * x for a, b in zip(low[2], high[2], strict=True))
+        spring.carrying, spring.rough = shares
         return spring
+
+    def beside(self, pair, radius, place):
+        """Return W, W_r, W_rr at a small place, the same of its derivative to it, W_pp and both shares.
+
+        The energy is that without tilt, to the second order in the place.
+        """
+        upright = RAYS.index(0.0)
+        (energy, force, slope), across, shares = self.along(pair, radius, upright)
+        (first, second), over, span = self.ends(pair, radius, upright)
+        t = min(over / span, 1.0)
+        turning = first[7] * (1.0 - t) + second[7] * t
+        growing = (second[7] - first[7]) / span if over <= span else 0.0
+        # W_pp = 4 r (r T - F), T = dM/dθ / h², and its derivatives to the radius; the second one without T_r.
+        bent = (
+            4.0 * radius * (radius * turning - force),
+            4.0 * (2.0 * radius * turning + radius**2 * growing - force - radius * slope),
+            8.0 * (turning - slope),
+        )
+        values = [
+            w + place * w_p + 0.5 * place**2 * w_pp
+            for w, w_p, w_pp in zip((energy, force, slope), across, bent, strict=True)
+        ]
+        return values, [w_p + place * w_pp for w_p, w_pp in zip(across, bent, strict=True)], bent[0], shares
 
     def along(self, pair, radius, ray):
         """Return W, W_r, W_rr of a ray, the same of its derivative to the place, and both shares."""
@@ -309,6 +340,8 @@ class PairLaw:
 
 RAYS = [-1.0 - math.sqrt(2.0), -1.5, -0.8, -0.3, 0.0, 0.3, 0.8, 1.5, 1.0 + math.sqrt(2.0)]
 """tan(φ/2) of the rays, φ the angle from no tilt in the plane of approach and lift."""
+NEAR = 0.05
+"""Up to here the energy follows from the face without tilt."""
 
 
 def cubic(left, right, over, span):

@@ -221,6 +221,10 @@ class Mount:
     away_m: Point
 
 
+PlateDamping = Callable[[int], FloatArray]
+"""Number of modes -> damping ratios of the plates in each (m,)."""
+
+
 @dataclass(frozen=True, slots=True)
 class Plates:
     """A box of plates round the gears of a pair.
@@ -229,7 +233,7 @@ class Plates:
     ----------
     contents, proportions, material : what the box is made from
     highest_hz : frequency up to which its modes count
-    plate_damping : number of modes -> damping ratios of the plates in each (m,), the first ones the same for any number
+    plate_damping : the first ones the same for any number of modes
     foot_damping_ratio : of the bolts
     loose_share : what one foot has left of its stiffness
     front_share : pinion, gear -> what the front bearing of its shaft bears of a force on it
@@ -243,10 +247,10 @@ class Plates:
     highest_hz: float
     foot_damping_ratio: float
     loose_share: float
-    front_share: Mapping[str, float]
+    front_share: Mapping[str, float] = field(hash=False)
     drive_share: tuple[float, float]
-    mounts: Mapping[str, Mount]
-    plate_damping: Callable[[int], FloatArray] = field(compare=False)
+    mounts: Mapping[str, Mount] = field(hash=False)
+    plate_damping: PlateDamping = field(compare=False)
 
 
 @dataclass(frozen=True, slots=True)

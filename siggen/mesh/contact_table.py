@@ -354,11 +354,11 @@ def _step_ratio(approach_m: FloatArray, tilt_rad: FloatArray, j: int) -> float:
 # Forces, moments and their slopes are the solver's own, so that few approaches do. Nodes lie at u k², u of the pair
 # alone.
 
-FORCE, SLOPE, CARRYING, ROUGH, ACROSS, ACROSS_SLOPE, ENERGY = range(7)
+FORCE, SLOPE, CARRYING, ROUGH, ACROSS, ACROSS_SLOPE, ENERGY, TURNING = range(8)
 """Values of the curves: force [N], its slope [N/m], carrying share of the face, share of the load on rough land.
 
-Where gears tilt, for every ray of `tilt_rays`: W_r [N] and W_rr, both shares, W_p [J], W_pr and W [J]; without tilt W_r
-is F."""
+Where gears tilt, for every ray of `tilt_rays`: W_r [N] and W_rr, both shares, W_p [J], W_pr and W [J], and on the ray
+without tilt, where W_r is F, T [N/m]."""
 VALUES, TILTING_VALUES = 4, 8
 TOLERANCE = 2e-2
 """Of the last Newton step of a column's loads: the force errs by 1e-4 of 1,200 N at most, by 1e-5 rms (measured)."""
@@ -443,12 +443,16 @@ def ray_curves(solver: TableSolver, row: KindRow, chosen: IntArray, rays: FloatA
     found = np.moveaxis(found, 0, 1)
     values = along_rays(rays, node, half_face, found)
     parts = [values[0], values[1], found[tilt_rays.CARRYING] / solver.pair.face_width_m, found[tilt_rays.ON_ROUGH]]
-    parts += [values[2], values[3]] if solver.options.tilts else []
     count = TILTING_VALUES if solver.options.tilts else VALUES
     curves = np.zeros((chosen.size, solver.node_m.size, rays.size, count))
     for number, part in enumerate(parts):
         curves[:, 1:, :, number] = np.moveaxis(part, -1, 1)
-    curves[:, 0, :, CARRYING : ROUGH + 1] = curves[:, 1, :, CARRYING : ROUGH + 1]
+    if solver.options.tilts:
+        curves[:, 1:, :, ACROSS], curves[:, 1:, :, ACROSS_SLOPE] = np.moveaxis(values[2:], -1, 2)
+        curves[:, 1:, :, TURNING] = np.moveaxis(found[tilt_rays.TURNING] / half_face**2, -1, 1)
+    curves[:, 0, :, [CARRYING, ROUGH]] = curves[:, 1, :, [CARRYING, ROUGH]]
+    if solver.options.tilts:
+        curves[:, 0, :, TURNING] = curves[:, 1, :, TURNING]
     return curves
 
 
@@ -507,6 +511,12 @@ TILTED_BEND = 1e-2
 ROUGH_BEND = 0.05
 """Largest deviation of the share of the load on rough land from its neighbours'."""
 
+TILTED_NODES = 10
+"""Nodes up to which rays are solved, of those up to the reference force.
+
+In quickstart to 14 um, where the first ray lifts the ends of a face by 8 um. Behind it the share of the force without
+tilt stays.
+"""
 TILTED = [ray for ray in range(1, RAYS.size - 1) if ray != UPRIGHT]
 """Rays that are solved."""
 
@@ -520,19 +530,22 @@ def tilted_columns(solver: TableSolver, row: KindRow, chosen: IntArray, upright:
         return upright
     scale = _scale(solver.node_m, upright)
 
+    end = TILTED_NODES + 1
+
     def solve(places: IntArray) -> FloatArray:
-        return _rays(solver, row, chosen[places]) / scale[places]
+        return _rays(solver, row, chosen[places]) / scale[places, :end]
 
     force = upright[:, : solver.reference + 1, :, FORCE].mean(axis=0)
-    counts = force / (force + 0.1 * force[-1])
+    counts = force[:end] / (force[:end] + 0.1 * force[-1])
 
     def bent(low: FloatArray, middle: FloatArray, high: FloatArray, weight: float) -> bool:
-        off = np.abs((1.0 - weight) * low + weight * high - middle)[: solver.reference + 1]
+        off = np.abs((1.0 - weight) * low + weight * high - middle)
         return bool(np.any(off[:, :, FORCE] * counts > TILTED_BEND) or np.any(off[:, :, ROUGH] > ROUGH_BEND))
 
     wanted = np.unique(np.append(np.arange(0, chosen.size, TILTED_COARSEST), chosen.size - 1)).tolist()
     stations, shares = halved(wanted, solve, bent, 1)
-    curves = scale * _between(chosen[stations], shares, chosen)
+    solved = _between(chosen[stations], shares, chosen)
+    curves = scale * np.concatenate([solved, np.repeat(solved[:, -1:], solver.node_m.size - end, axis=1)], axis=1)
     curves[:, :, UPRIGHT] = upright[:, :, 0]
     keep_rising(solver.node_m, curves)
     pushed, slope = (np.moveaxis(curves[..., column], 1, -1) for column in (FORCE, SLOPE))
@@ -550,9 +563,13 @@ def _scale(node_m: FloatArray, upright: FloatArray) -> FloatArray:
 
 
 def _rays(solver: TableSolver, row: KindRow, chosen: IntArray) -> FloatArray:
-    """Return solved columns (chosen, nodes, rays, values); on the last rays a rigid corner only comes to touch."""
-    curves = np.zeros((chosen.size, solver.node_m.size, RAYS.size, TILTING_VALUES))
-    curves[:, :, TILTED] = ray_curves(solver, row, chosen, RAYS[TILTED])
+    """Return solved columns (chosen, TILTED_NODES + 1, rays, values).
+
+    On the last rays a rigid corner only comes to touch.
+    """
+    near = solver._replace(node_m=solver.node_m[: TILTED_NODES + 1])
+    curves = np.zeros((chosen.size, near.node_m.size, RAYS.size, TILTING_VALUES))
+    curves[:, :, TILTED] = ray_curves(near, row, chosen, RAYS[TILTED])
     return curves
 
 

@@ -303,7 +303,7 @@ def face_force(
     return solved_force(slices, approach_m, tilt_rad, loads_m, room, tolerance)
 
 
-@njit(cache=True, _nrt=False, error_model="numpy")
+@entry(cache=True, _nrt=False, error_model="numpy")
 def keep_rigid_sinks(slices: FaceSlices, room: SolverRoom) -> None:
     """Put the sinks of slices without load into the room: all solutions of one position need them."""
     for i in range(room.rigid_m.size):
@@ -475,8 +475,8 @@ def loads_under_force(slices: FaceSlices, force_n: float, tilt_rad: float = 0.0)
     if force_n <= 0.0:
         return loads
     # First touch by rigid flanks, then as if the whole pair were linear: both ends of a bracket, stretched if needed.
-    sinks = np.array([slice_sink(slice_of(slices, i), 0.0).sink_m for i in range(loads.size)])
-    low = float((sinks + slices.lead_m - tilt_rad * slices.face_m).min())
+    keep_rigid_sinks(slices, room)
+    low = float((room.rigid_m + slices.lead_m - tilt_rad * slices.face_m).min())
     teeth = slices.teeth.sum * slices.kappa_per_pa / (slices.kernel.cell_m * loads.size)
     high, step = np.inf, 2.0 * (slices.compliance_m_per_n + teeth) * force_n + 1e-7
     approach = low + step

@@ -150,7 +150,7 @@ class FaceSlices(NamedTuple):
     carrying_m: float
 
 
-@entry(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def slice_of(slices: FaceSlices, i: int) -> CoveredSlice:
     """Return slice i on its own."""
     gap = slices.left_m[i], slices.right_m[i], slices.notch_m[i], slices.floor_m[i]
@@ -158,7 +158,7 @@ def slice_of(slices: FaceSlices, i: int) -> CoveredSlice:
     return CoveredSlice(gap, tips, slices.covered[i], slices.spread, (slices.radii_m[i], slices.rounding_m))
 
 
-@entry(cache=True, _nrt=False, error_model="numpy")
+@njit(cache=True, _nrt=False, error_model="numpy")
 def slice_sink(one: CoveredSlice, load: float) -> GapSink:
     """Return the sink of a slice under a load κq [m]."""
     if 0.0 < one.covered < 1.0:

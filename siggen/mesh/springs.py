@@ -16,7 +16,7 @@ from siggen.lanes import Lanes, extract, load, shuffle
 from siggen.mesh import pair_law as layout
 from siggen.mesh.contact_table import TILTING_VALUES
 from siggen.mesh.pair_law import PairLaw
-from siggen.mesh.tilt_rays import HALF_RAYS, UPRIGHT
+from siggen.mesh.tilt_rays import HALF_RAYS, NEAR, UPRIGHT
 
 # Spring of one tilted pair from the energy that the table of the contact holds along rays, compiled.
 #
@@ -46,7 +46,7 @@ class RayPlace(NamedTuple):
 
 
 class AlongRay(NamedTuple):
-    """W [J], W_r [N], W_rr [N/m], W_p [J], W_pr [N], W_prr [N/m], shares of carrying and of damage."""
+    """W [J], W_r [N], W_rr [N/m], W_p [J], W_pr [N], W_prr [N/m], shares of carrying and of damage, T [N/m] and T_r."""
 
     energy: float
     radial: float
@@ -56,6 +56,8 @@ class AlongRay(NamedTuple):
     across_bend: float
     carrying: float
     rough: float
+    turning: float
+    turning_slope: float
 
 
 class TiltedAnswer(NamedTuple):
@@ -130,13 +132,33 @@ def along_ray(numbers: FloatArray, place: RayPlace, ray: int) -> AlongRay:
     area = within * (low + within * (0.5 * s_0 + t * (bend / 3.0 + 0.25 * t * twist)))
     shares, beyond = low + t * (high - low), over - within
     energy, curved = extract(low, 6) + extract(area, 0), extract(second, 4)
+    growing = extract(rise, 7)
     if beyond > 0.0:
         energy += beyond * (extract(value, 0) + 0.5 * beyond * extract(slope, 0))
-        value, curved = value + beyond * slope, 0.0
+        value, curved, growing = value + beyond * slope, 0.0, 0.0
     return AlongRay(
         energy, extract(value, 0), extract(slope, 0), extract(value, 4), extract(slope, 4), curved,
-        extract(shares, 2), extract(shares, 3),
+        extract(shares, 2), extract(shares, 3), extract(shares, 7), growing,
     )  # fmt: skip
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _beside(upright: AlongRay, p: float, radius: float) -> tuple[AlongRay, float]:
+    """Return what stands at a small p beside the ray without tilt, to the second order, and W_pp."""
+    force, stiffness, turning = upright.radial, upright.radial_slope, upright.turning
+    bent = 4.0 * radius * (radius * turning - force)
+    steeper = 4.0 * (radius * (2.0 * turning + radius * upright.turning_slope - stiffness) - force)
+    curved, half = 8.0 * (turning - stiffness), 0.5 * p * p
+    beside = AlongRay(
+        upright.energy + p * upright.across + half * bent,
+        force + p * upright.across_slope + half * steeper,
+        stiffness + p * upright.across_bend + half * curved,
+        upright.across + p * bent,
+        upright.across_slope + p * steeper,
+        upright.across_bend + p * curved,
+        upright.carrying, upright.rough, turning, upright.turning_slope,
+    )  # fmt: skip
+    return beside, bent
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
@@ -159,18 +181,31 @@ def _between(low: AlongRay, high: AlongRay, width: float, x: float) -> _Energy:
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def tilted_answer(
-    low: AlongRay, high: AlongRay, ray: int, way: tuple[float, float, float], half_face: float
+    numbers: FloatArray, place: RayPlace, way: tuple[float, float, float], half_face: float
 ) -> TiltedAnswer:
-    """Return force and moment with their derivatives between two rays.
+    """Return force and moment with their derivatives.
 
     `way`: approach, lift of the ends and radius [m].
     """
     approach, lift, radius = way
-    first = _ray(ray)
-    width = _ray(ray + 1) - first
     p = lift / (radius + approach)
-    x = (p - first) / width
-    found = _between(low, high, width, x)
+    size = abs(p)
+    ray = UPRIGHT if size < _FIRST else ray_before(p)
+    low = along_ray(numbers, place, ray)
+    carrying, rough = low.carrying, low.rough
+    if size <= NEAR:
+        low, bent = _beside(low, p, radius)
+        found = _Energy(low.radial, low.across, low.radial_slope, low.across_slope, bent)
+    else:
+        behind, first = ray + 1, _ray(ray)
+        if ray == UPRIGHT:
+            behind, first = (ray + 1, NEAR) if p > 0.0 else (ray - 1, -NEAR)
+            low, _ = _beside(low, first, radius)
+        high, width = along_ray(numbers, place, behind), _ray(behind) - first
+        x = (p - first) / width
+        found = _between(low, high, width, x)
+        carrying += x * (high.carrying - carrying)
+        rough += x * (high.rough - rough)
     cosine, sine, angle, inverse = approach / radius, lift / radius, 0.5 * (1.0 + p * p), 1.0 / radius
     turned = angle * found.across * inverse
     bend = angle * (angle * found.across_bend + p * found.across) * inverse * inverse
@@ -188,8 +223,8 @@ def tilted_answer(
         half_face * (sine * found.radial + cosine * turned),
         half_face * (cosine * sine * (h_rr - h_pp) + (cosine * cosine - sine * sine) * h_rp),
         half_face * half_face * (sine * sine * h_rr + twice + cosine * cosine * h_pp),
-        low.carrying + x * (high.carrying - low.carrying),
-        low.rough + x * (high.rough - low.rough),
+        carrying,
+        rough,
     )
 
 
@@ -285,11 +320,12 @@ def _tilted_spring(law: PairLaw, pair: PairPlace, tilt: float, approach_m: float
     radius = sqrt(approach_m * approach_m + lift * lift)
     if not (radius > LEAST_M and abs(lift) < HALF_RAYS[-1] * (radius + approach_m)):
         return Spring(0.0, 0.0, 0.0, penetration_m, 0.0, 0.0, 0.0, 1.0, 0.0)
-    ray = ray_before(lift / (radius + approach_m))
-    place = _node_place(law, pair, radius)
-    low, high = along_ray(law.numbers, place, ray), along_ray(law.numbers, place, ray + 1)
-    way, half_face = (approach_m, lift, radius), law.scalars[layout.CONTACT_HALF_FACE]
-    force, stiffness, moment, cross, turning, carrying, rough = tilted_answer(low, high, ray, way, half_face)
+    place, way, half_face = (
+        _node_place(law, pair, radius),
+        (approach_m, lift, radius),
+        law.scalars[layout.CONTACT_HALF_FACE],
+    )
+    force, stiffness, moment, cross, turning, carrying, rough = tilted_answer(law.numbers, place, way, half_face)
     return Spring(force, stiffness, stiffness, penetration_m, moment, cross, turning, carrying, rough)
 
 

@@ -41,7 +41,7 @@ from siggen.drivetrain.makers import (
     rigid_housing,
 )
 from siggen.drivetrain.structure import matrices
-from siggen.gearbox.housing import CASING_GYRATION, Block, Mount, Plates
+from siggen.gearbox.housing import CASING_GYRATION, Block, Mount, PlateDamping, Plates
 from siggen.gearbox.mode_table import BASE, DRIVE, ModeTable, seats_of
 from siggen.gearbox.specimen import Specimen
 from siggen.gearbox.train import ring_outer_radius_m
@@ -64,7 +64,7 @@ BoltMotions = tuple[tuple[Point, str, float, WallMotion], ...]
 """Place from the middle between both shafts, axis, stiffness [N/m] and motion of what a base takes along."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class SpecimenHousing:
     """A housing with its modes.
 
@@ -129,6 +129,7 @@ def settle_s(slowest_per_s: float) -> float:
     return min(SETTLED_DECAYS / slowest_per_s, LONGEST_S) if slowest_per_s > 0.0 else LONGEST_S
 
 
+@lru_cache(maxsize=4)  # every operating point asks for that of its gearbox
 def moving_with_gears(housing: SpecimenHousing) -> Housing:
     """Return the lowest modes of a housing, those that move with the gears."""
     modes, n = housing.modes, housing.coupled
@@ -184,9 +185,17 @@ EDGE_M = 8e-3
 """Sensors stand at least so far from a plate's edge."""
 
 
-def plate_housing(plates: Plates, pair: GearPair, bearings: Sequence[str]) -> SpecimenHousing:
-    """Return a box of plates with its modes; `bearings` are those of the pinion's and the gear's shaft."""
-    box, modes, ratio = damped_modes(plates)
+@lru_cache(maxsize=4)  # states, operating points and records of a gearbox share them
+def plate_housing(
+    plates: Plates, plate_damping: PlateDamping, pair: GearPair, bearings: tuple[str, ...]
+) -> SpecimenHousing:
+    """Return a box of plates with its modes.
+
+    `plate_damping` is that of the plates, which are equal without it; `bearings` are those of the pinion's and the
+    gear's shaft.
+    """
+    box, modes = _box_of(plates)
+    ratio = _damping_ratio(modes, plates, plate_damping)
     pushed = pair.helix_rad != 0.0
     seats = _seats(box, modes, plates.front_share, dict(zip(Side, bearings, strict=True)), located=pushed)
     return SpecimenHousing(
@@ -203,11 +212,14 @@ def plate_housing(plates: Plates, pair: GearPair, bearings: Sequence[str]) -> Sp
     )
 
 
-def damped_modes(plates: Plates) -> tuple[Box, BoxModes, FloatArray]:
-    """Return box, modes and their damping ratios (m,)."""
+def _box_of(plates: Plates) -> tuple[Box, BoxModes]:
     made = plates.contents, plates.proportions, plates.material
-    box, modes = _box_modes(*made, plates.highest_hz, plates.loose_share)
-    return box, modes, mixed_damping(modes, plates.plate_damping(modes.frequency_hz.size), plates.foot_damping_ratio)
+    return _box_modes(*made, plates.highest_hz, plates.loose_share)
+
+
+def _damping_ratio(modes: BoxModes, plates: Plates, plate_damping: PlateDamping) -> FloatArray:
+    """Return the damping ratios (m,) of modes."""
+    return mixed_damping(modes, plate_damping(modes.frequency_hz.size), plates.foot_damping_ratio)
 
 
 def _bolts(box: Box, modes: BoxModes, share: float) -> BoltMotions:
@@ -342,7 +354,8 @@ def specimen_housing(specimen: Specimen) -> SpecimenHousing | None:
     """Return the housing of a specimen; the same for all of its states and records; None for one without modes."""
     match specimen.housing:
         case Plates() as plates:
-            return plate_housing(plates, specimen.pair, [shaft.bearing for shaft in specimen.names.shafts])
+            bearings = tuple(shaft.bearing for shaft in specimen.names.shafts)
+            return plate_housing(plates, plates.plate_damping, specimen.pair, bearings)
         case ModeTable() as table:
             return _modal_housing(table, specimen)
     return None
@@ -352,8 +365,8 @@ def housing_settle_s(specimen: Specimen) -> float:
     """Return the time over which the modes settle [s], which every record asks for; 0 without any."""
     match specimen.housing:
         case Plates() as plates:
-            _, modes, ratio = damped_modes(plates)
-            return modes_settle_s(modes.frequency_hz, ratio)
+            _, modes = _box_of(plates)
+            return modes_settle_s(modes.frequency_hz, _damping_ratio(modes, plates, plates.plate_damping))
         case ModeTable() as table:
             return modes_settle_s(table.frequency_hz, table.damping_ratio)
         case Block() as block if specimen.planets is not None:  # others move with the gears
