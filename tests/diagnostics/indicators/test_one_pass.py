@@ -164,8 +164,9 @@ def test_a_chosen_channel_reads_the_table_of_all(folder: Path, monkeypatch: pyte
 
 @pytest.mark.slow  # trains, audits and reports; a walk takes an own indicator through a ranking and a table
 def test_an_own_indicator_goes_through_features_training_audit_report_and_prediction(
-    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    folder = made(tmp_path / "set", 8, {"train": 10, "validation": 5, "test": 5})
     (tmp_path / "own_indicators_of_a_user.py").write_text(OWN)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", [*sys.path])
