@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -294,9 +295,12 @@ if __name__ == "__main__":
     # python -m tests.dataset.fake_set FOLDER WORKERS [EXECUTOR]: a process of its own that a test can kill
     from siggen.errors import SiggenError
 
+    by_name: Any = import_module("tests.dataset.fake_set")  # workers of Ray do not know this module as __main__
+
     try:
         chosen = sys.argv[3] if len(sys.argv) > 3 else None
-        write_fake_set(Path(sys.argv[1]), workers=int(sys.argv[2]), simulation=simulate_slowly, executor=chosen)
+        slowly = by_name.simulate_slowly
+        by_name.write_fake_set(Path(sys.argv[1]), workers=int(sys.argv[2]), simulation=slowly, executor=chosen)
     except SiggenError as error:
         sys.stderr.write(f"{error}\n")
         sys.exit(error.exit_code)

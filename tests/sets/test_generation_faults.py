@@ -140,21 +140,22 @@ def test_a_killed_worker_does_not_stop_generation(
 
 @pytest.mark.slow  # the same
 def test_a_record_that_kills_every_worker_ends_with_an_error_that_names_its_shard(tmp_path: Path) -> None:
-    with pytest.raises(EngineError, match=r"shard train-00001 \(6 records from 6 on\) was lost 3 times"):
+    with pytest.raises(EngineError, match=r"workers died 3 times.*Under way: shard train-00001 \(6 records"):
         write_fake_set(tmp_path, workers=1, simulation=simulate_and_die)
     assert not list(tmp_path.rglob(f"*{LEFTOVER_SUFFIX}"))
 
 
 MEMORY = """
-import resource, sys
+import sys
 from pathlib import Path
+from siggen.dataset.environment import peak_memory_bytes
 from siggen.sets.generation import generate
 from tests.dataset.fake_set import fake_config, fake_physics
 if __name__ == "__main__":
     config = fake_config(fs_hz=51200.0, duration_s=10.0, specimens=int(sys.argv[2]))
     with fake_physics():
         generate(config, Path(sys.argv[1]), 2)
-    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+    print(peak_memory_bytes()["parent"])
 """
 
 
@@ -164,8 +165,8 @@ def test_the_drivers_memory_does_not_grow_with_the_set(tmp_path: Path) -> None:
     peaks = []
     for specimens in (10, 30):
         command = [sys.executable, "-c", MEMORY, str(tmp_path / str(specimens)), str(specimens)]
-        peaks.append(1024 * int(subprocess.run(command, check=True, capture_output=True, text=True).stdout))
-    assert peaks[1] < 250e6
+        peaks.append(int(subprocess.run(command, check=True, capture_output=True, text=True).stdout))
+    assert peaks[1] < 300e6  # an interpreter with the simulation has about 250 MB
     assert peaks[1] - peaks[0] < 20e6
 
 
