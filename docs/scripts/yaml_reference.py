@@ -1,6 +1,6 @@
 """Print docs/reference/yaml.md: `python docs/scripts/yaml_reference.py > docs/reference/yaml.md`, or `make reference`.
 
-Meaning, range and default come from `siggen schema`.
+Meaning, range and default come from the JSON Schema that `siggen init` writes.
 """
 
 from __future__ import annotations
@@ -12,9 +12,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from schema_keys import Key, Schema, is_number_part
-from typer.testing import CliRunner
 
-from siggen.cli.app import app
+from siggen.config.expert_keys import schema_text
 from siggen.keys.catalogue import CATALOGUE
 from siggen.keys.distributions import Choice, LogUniform, Normal, Uniform, is_written_number, written_text
 
@@ -23,7 +22,7 @@ SECTION_KIND = "section (kind: "
 
 HEAD = """# Keys of the YAML file
 
-This page is printed by `make reference` from `siggen schema`. Begin with
+This page is printed by `make reference` from the JSON Schema that `siggen init` writes. Begin with
 [the twenty keys that matter](twenty_keys.md).
 
 * **Number**, or a limit alone, may be a constant, or a range such as `[1, 2]` from which siggen draws once per gearbox
@@ -261,7 +260,7 @@ def listing_of(schema: Schema, rows: list[Entry]) -> Iterator[str]:
 
 def page() -> str:
     """Return the page."""
-    schema = Schema(json.loads(CliRunner().invoke(app, ["schema"], catch_exceptions=False).output))
+    schema = Schema(json.loads(schema_text()))
     keys_everywhere = list(schema.keys(schema.content))
     keys = without_repeated(schema, keys_everywhere)
     tops = [(key, entries(schema, keys, key.path)) for key in keys if key.path in schema.content["properties"]]

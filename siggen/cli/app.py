@@ -21,7 +21,6 @@ from siggen.cli.path import path
 from siggen.cli.plan import plan
 from siggen.cli.pressure import pressure
 from siggen.cli.publish import publish
-from siggen.cli.schema import schema
 from siggen.cli.show import show
 from siggen.cli.simulate import simulate
 from siggen.cli.spectrum import spectrum
@@ -32,7 +31,7 @@ from siggen.errors import EXIT_INTERRUPTED, EXIT_UNEXPECTED, EXIT_USAGE, SiggenE
 TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 # Command files import nothing slow at their top, so that all of them together start at once.
-COMMANDS = (init, plan, generate, verify, publish, show, simulate, export_model, schema)
+COMMANDS = (init, plan, generate, verify, publish, show, simulate, export_model)
 INSPECTED: dict[str, Callable[..., None]] = {
     "tvms": tvms,
     "flank": flank,

@@ -54,7 +54,6 @@ LINES = {
     "siggen show": Line("short --record 2 --png OUT/record.png"),
     "siggen simulate": Line("short.yaml --record 1 --out OUT/record.parquet"),
     "siggen export-model": Line("short.yaml --record 1 --out OUT/model.npz"),
-    "siggen schema": Line("", writes=False),
     "siggen inspect spectrum": Line("short.yaml --png OUT/spectrum.png"),
     "siggen inspect tvms": Line("short.yaml --out OUT/tvms.csv --png OUT/tvms.png"),
     "siggen inspect flank": Line("short.yaml --out OUT/flank.csv --png OUT/flank.png"),

@@ -1,4 +1,4 @@
-"""`siggen schema`: an editor that follows it accepts what the package accepts, and shows what keys mean."""
+"""The JSON Schema that `siggen init` writes: editors that follow it accept what the package does, and show meanings."""
 
 from __future__ import annotations
 
@@ -7,18 +7,15 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from typer.testing import CliRunner
 
-from siggen.cli.app import app
 from siggen.config import Config, read_yaml
+from siggen.config.expert_keys import schema_text
 from siggen.damage.registry import BY_WORD
 
 
 @pytest.fixture(scope="module")
 def schema():
-    result = CliRunner().invoke(app, ["schema"])
-    assert result.exit_code == 0
-    return json.loads(result.stdout)
+    return json.loads(schema_text())
 
 
 def resolved(schema, node):
