@@ -169,9 +169,8 @@ def page() -> str:
             "",
             "In `internals/*.parquet`, where the YAML file has `internals`, as float32 series beside the ids of "
             "the record.",
-            "`siggen simulate` writes them for one record. The list shows those of `configs/quickstart.yaml`; other "
-            "models",
-            "have other motions and places. `pair_k` is a pair of teeth in reach of contact, k = 0, 1, ...",
+            "`siggen show --internals` writes them for one record. The list shows those of `configs/quickstart.yaml`;",
+            "other models have other motions and places. `pair_k` is a pair of teeth in reach of contact, k = 0, 1 ...",
             "",
             *internals(),
         )

@@ -11,7 +11,6 @@ import typer
 
 from siggen.cli.echo import echo
 from siggen.cli.errors import errors
-from siggen.cli.export_model import export_model
 from siggen.cli.flank import flank
 from siggen.cli.generate import generate
 from siggen.cli.init import init
@@ -22,7 +21,6 @@ from siggen.cli.plan import plan
 from siggen.cli.pressure import pressure
 from siggen.cli.publish import publish
 from siggen.cli.show import show
-from siggen.cli.simulate import simulate
 from siggen.cli.spectrum import spectrum
 from siggen.cli.tvms import tvms
 from siggen.cli.verify import verify
@@ -31,7 +29,7 @@ from siggen.errors import EXIT_INTERRUPTED, EXIT_UNEXPECTED, EXIT_USAGE, SiggenE
 TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 # Command files import nothing slow at their top, so that all of them together start at once.
-COMMANDS = (init, plan, generate, verify, publish, show, simulate, export_model)
+COMMANDS = (init, plan, generate, verify, show, publish)
 INSPECTED: dict[str, Callable[..., None]] = {
     "tvms": tvms,
     "flank": flank,

@@ -61,7 +61,7 @@ def modes(
             from siggen.views.modes import save_modes_figure
 
             save_modes_figure(found, png)
-        picture.drawn(png)
+        picture.drawn(png, err=as_json)
 
 
 def _printed(found: SpecimenModes) -> Table:

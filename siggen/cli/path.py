@@ -76,7 +76,7 @@ def path(
             from siggen.views.path import save_path_figure
 
             save_path_figure(found, png)
-        picture.drawn(png)
+        picture.drawn(png, err=as_json)
 
 
 def _write_modes(found: PathCurves, path: Path) -> None:

@@ -36,9 +36,9 @@ class PictureOptions:
             return None
         return check_picture_file(self.png or Path(tempfile.mkdtemp(prefix="siggen_")) / f"{command}.png")
 
-    def drawn(self, png: Path) -> None:
+    def drawn(self, png: Path, *, err: bool = False) -> None:
         """Say where the picture is, and open it if asked for."""
-        echo(str(png))
+        echo(str(png), err=err)
         if self.show and not webbrowser.open(png.resolve().as_uri()):
             echo(f"note: no program was found to show it; open {png} yourself", err=True)
 

@@ -255,7 +255,7 @@ class Dataset:
         if not self.internal_columns:
             raise UsageError(
                 f"{self.path} stores no internal quantities; `internals` in its configuration would ask for them, "
-                "and `siggen simulate` computes those of one record"
+                "and `siggen show --internals --out` computes those of one record"
             )
 
     def record(self, record_id: int) -> dict[str, Any]:

@@ -116,7 +116,7 @@ def test_the_card_and_the_plan_say_what_the_machine_is(made: Path) -> None:
 
 def test_every_mesh_carries_its_share_of_the_torque_in_the_mean(made: Path, tmp_path: Path) -> None:
     file = tmp_path / "meshes.parquet"
-    done = run("simulate", str(made / "config.yaml"), "--record", "0", "--out", str(file))
+    done = run("show", str(made / "config.yaml"), "--record", "0", "--internals", "--out", str(file))
     assert done.returncode == 0, done.stderr
     table = pq.read_table(file)
     names = [f"{ring}_{planet}_mesh_force_n" for ring in ("sun", "ring") for planet in (1, 2, 3)]

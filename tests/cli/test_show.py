@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from pathlib import Path
 
@@ -23,12 +24,27 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_labels_and_damage_are_listed_with_units(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("COLUMNS", "200")
+def test_labels_and_damage_are_listed_with_units_within_80_columns(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
     result = CliRunner().invoke(app, ["show", str(folder), "--record", "3"])
     assert result.exit_code == 0
-    for text in ("Record 3", "slight", "torque_nm", "N m", "512 samples", "Damage", "ellipse"):
+    assert max(map(len, result.stdout.splitlines())) <= 80
+    for text in ("Record 3", "slight", "torque_nm", "N m", "512 samples", "Damage", "ellipse", "1 of"):
         assert text in result.stdout
+    dataset = open_set(folder)
+    words = set(result.stdout.split())
+    assert words > {*dataset.labels(columns=None).schema.names, *(channel.column for channel in dataset.channels)}
+
+
+def test_json_has_the_labels_and_the_damage_in_full(folder: Path) -> None:
+    found = json.loads(CliRunner().invoke(app, ["show", str(folder), "--record", "3", "--json"]).stdout)
+    record = open_set(folder).record(3)
+    assert found["labels"]["torque_nm"] == record["torque_nm"]
+    assert len(found["damage"]) == record["damage_count"] > 0
+    for column, told in found["channels"].items():
+        assert told["rms"] == pytest.approx(np.sqrt(np.mean(record[column].astype(float) ** 2)))
 
 
 def test_a_healthy_record_has_no_damage_table(folder: Path) -> None:
@@ -73,6 +89,8 @@ def test_the_picture_is_written_and_its_path_alone_is_on_stdout(folder: Path, tm
     [
         (["--record", "99"], "no record 99"),
         (["--record", "3", "--png", "x.docx"], r"\.docx"),
+        (["--record", "3", "--set", "duration_s=0.1"], "add --out"),
+        (["--record", "3", "--internals", "--out", "x.npz"], "equations of motion"),
         (["--record", "3", "--png", "x.png", "--channel", "casing"], "bearing_vertical"),
     ],
 )

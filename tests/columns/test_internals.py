@@ -129,7 +129,7 @@ def test_a_set_without_internals_says_how_to_get_them(tmp_path: Path) -> None:
     dataset = open_set(tmp_path)
     assert dataset.internal_columns == ()
     for ask in (lambda: next(dataset.internals()), lambda: dataset.record_internals(0)):
-        with pytest.raises(UsageError, match="siggen simulate"):
+        with pytest.raises(UsageError, match="siggen show"):
             ask()
     assert "internals" not in dataset.manifest
 

@@ -74,7 +74,7 @@ LINES = {
     **{change: f"siggen plan --trial 0 {change}" for change in MISTAKES},
     "publish": "siggen publish toy --facts publication.yaml --to published",
     "explore": "siggen-diagnostics explore toy --out explorer.html",
-    "simulate": "siggen simulate toy.yaml --record 0 --signals --out one.parquet",
+    "simulate": "siggen show toy.yaml --record 0 --out one.parquet",
 }
 
 

@@ -146,7 +146,7 @@ def test_a_record_after_the_end_is_refused_with_those_that_there_are(tmp_path: P
     count = len(load_config(lives()).life(0).ages_h)
     assert count < 6
     result = CliRunner().invoke(
-        app, ["simulate", str(tmp_path / "lives.yaml"), "--record", "5", "--out", str(tmp_path / "r.csv")]
+        app, ["show", str(tmp_path / "lives.yaml"), "--record", "5", "--out", str(tmp_path / "r.csv")]
     )
     assert result.exit_code != 0
     assert f"allowed: 0 to {count - 1}" in str(result.exception)

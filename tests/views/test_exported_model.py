@@ -274,7 +274,7 @@ def test_the_archive_is_the_same_whenever_it_is_written_and_needs_no_pickle(tmp_
     files = [tmp_path / "a.npz", tmp_path / "b.npz"]
     for file in files:
         arguments = ["tests/configs/linear_pits.yaml", "--record", "5", "--out", str(file), "--set", "duration_s=0.1"]
-        result = runner.invoke(app, ["export-model", *arguments], catch_exceptions=False)
+        result = runner.invoke(app, ["show", *arguments], catch_exceptions=False)
         assert result.output.strip() == str(file)
     assert files[0].read_bytes() == files[1].read_bytes()
     with np.load(files[0], allow_pickle=False) as model:
@@ -290,7 +290,5 @@ def test_the_archive_is_the_same_whenever_it_is_written_and_needs_no_pickle(tmp_
 
 
 def test_another_ending_is_refused_before_any_work(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"allowed is \.npz"):
-        runner.invoke(
-            app, ["export-model", "nowhere.yaml", "--record", "0", "--out", "model.mat"], catch_exceptions=False
-        )
+    with pytest.raises(UsageError, match=r"allowed are \.csv, \.parquet, \.npz"):
+        runner.invoke(app, ["show", "nowhere.yaml", "--record", "0", "--out", "model.mat"], catch_exceptions=False)

@@ -18,7 +18,7 @@ from tests.walks.walking import run
 
 WRITERS = [name for name, line in LINES.items() if line.writes]
 QUICK = {
-    *("siggen generate", "siggen simulate", "siggen inspect flank"),
+    *("siggen generate", "siggen show", "siggen inspect flank"),
     *("siggen-diagnostics score", "siggen-diagnostics explore"),
 }
 """Sets, tables, pictures, pages: each kind of file once."""

@@ -1,4 +1,4 @@
-"""`siggen simulate` as a user calls it."""
+"""`siggen show --out` as a user calls it."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ runner = CliRunner()
 
 
 def run(*arguments: object) -> None:
-    result = runner.invoke(app, ["simulate", *map(str, arguments), *SET])
+    result = runner.invoke(app, ["show", *map(str, arguments), *SET])
     if result.exception is not None and not isinstance(result.exception, SystemExit):
         raise result.exception
     assert result.exit_code == 0, result.output
 
 
 def test_the_table_holds_the_stored_signal_and_what_no_sensor_sees(tmp_path: Path) -> None:
-    run("tests/configs/linear_pits.yaml", "--record", 6, "--out", tmp_path / "record.parquet")
+    run("tests/configs/linear_pits.yaml", "--record", 6, "--internals", "--out", tmp_path / "record.parquet")
     table = pyarrow.parquet.read_table(tmp_path / "record.parquet")
     config = load_config("tests/configs/linear_pits.yaml", SET[1::2])
     record = next(simulated(config, [6]))
@@ -47,7 +47,7 @@ def test_a_record_that_the_set_does_not_have_is_refused_with_the_range(tmp_path:
 
 @pytest.mark.parametrize("file", ["tests/configs/linear_pits.yaml", "tests/configs/casing.yaml"])
 def test_the_transmission_error_is_the_deflection_of_the_teeth_under_load(tmp_path: Path, file: str) -> None:
-    run(file, "--record", 0, "--out", tmp_path / "record.parquet")
+    run(file, "--record", 0, "--internals", "--out", tmp_path / "record.parquet")
     table = pyarrow.parquet.read_table(tmp_path / "record.parquet")
     force, stiffness = (table[c].to_numpy().mean() for c in ("mesh_force_n", "mesh_stiffness_n_per_m"))
     error = table["transmission_error_m"].to_numpy().mean()
@@ -57,7 +57,7 @@ def test_the_transmission_error_is_the_deflection_of_the_teeth_under_load(tmp_pa
 
 
 def test_internals_can_be_left_out(tmp_path: Path) -> None:
-    run("tests/configs/linear_pits.yaml", "--record", 0, "--signals", "--out", tmp_path / "signals.parquet")
+    run("tests/configs/linear_pits.yaml", "--record", 0, "--out", tmp_path / "signals.parquet")
     run("tests/configs/linear_pits.yaml", "--record", 0, "--internals", "--out", tmp_path / "all.parquet")
     signals, everything = (pyarrow.parquet.read_table(tmp_path / f"{name}.parquet") for name in ("signals", "all"))
     assert signals.column_names == [
