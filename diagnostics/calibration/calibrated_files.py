@@ -101,7 +101,8 @@ def calibrated_text(found: Calibration, out: Path) -> str:
         *(f"{key}: {value!r}" for key, value in sampled_as(found.rig, point, found.blocks.fs_hz).items()),
         "operating_points:",
         f"  - speed_hz: {_number(point['speed_hz'])}    # of the recordings",
-        f"    torque_nm: {_number(point['torque_nm'])}    # not seen in recordings: of the rig, or --torque",
+        f"    torque_nm: {_number(point['torque_nm'])}    # not seen in recordings: of the machine, or torque_nm of "
+        f"the rig file",
         f"variation: {{speed: {{random_rms: {_range(0.7 * low, 1.4 * high)}}}}}",
         "background: null              # noise and lines are those of the recordings",
         "dynamics: {unbalance: {grade_mm_s: 0.0}}    # among the lines of the recordings",
@@ -225,7 +226,7 @@ ALWAYS_OPEN = (
     "level of the gears' errors: sidebands depend on it, but as much on relief, load and path; as wide as in the rig, "
     "give an accuracy class if you know it",
     "structure and tip relief: as wide as in the rig",
-    "torque and its variation: as in the rig, or --torque",
+    "torque and its variation: as in the machine's configuration, or torque_nm of the rig file",
     "lines at multiples of a shaft's order above the fourth that stand out by less than 6 dB: they count as errors of "
     "the teeth, which are simulated",
     "correlation time of the noise's level: 1 to 8 ms",

@@ -73,7 +73,8 @@ def path_level_doubt(mass_kg: Any, grid_hz: np.ndarray, accelerance: np.ndarray)
     mass = f"{low:g} kg" if low == high else f"{low:g} to {high:g} kg"
     return (
         f"doubtful: for the rig's forces the recordings are about {abs(level_db):.0f} dB too "
-        f"{'high' if level_db > 0.0 else 'low'} at a housing of {mass}; are --unit and --sensitivity those of the "
+        f"{'high' if level_db > 0.0 else 'low'} at a housing of {mass}; are unit and sensitivity of the rig file "
+        f"those of the "
         "files, and torque and module those of the machine?"
     )
 

@@ -14,6 +14,7 @@ from diagnostics.calibration.drivetrain import MeshOrder, TrainOrders, drivetrai
 from diagnostics.calibration.healthy_blocks import HealthyBlock
 from diagnostics.calibration.order_record import OrderRecord
 from diagnostics.calibration.path_draws import number_limits
+from diagnostics.recordings.in_rig import in_rig
 from diagnostics.recordings.taken import RecordingFacts, file_channels
 from siggen.errors import UsageError
 
@@ -96,7 +97,7 @@ def read_rig(file: Path) -> CalibratedRig:
 
 
 def rig_channels(
-    rig: CalibratedRig, source: tuple[Path, int | None], said: Mapping[str, str], facts: RecordingFacts
+    rig: CalibratedRig, source: tuple[Path, int | None], facts: RecordingFacts
 ) -> tuple[tuple[str, ...], dict[str, str]]:
     """Return the channels of a rig, and the column of each where it has another name.
 
@@ -105,20 +106,20 @@ def rig_channels(
     rig : Rig
     source : (Path, int or None)
         First recording.
-    said : mapping
-        Column by channel, as the user gave it.
     facts : RecordingFacts
-        How it is read.
+        How it is read; its columns by channel, as the user gave them.
 
     Raises
     ------
     UsageError
         If the recording has more or fewer channels than the rig.
     """
-    names = rig.channels
+    names, said = rig.channels, facts.columns
     if said:
         if set(said) != set(names):
-            raise UsageError(f"--channel: received {', '.join(said)}; the rig has the channels {', '.join(names)}")
+            raise UsageError(
+                f"channels of the rig file: received {', '.join(said)}; the rig has the channels {', '.join(names)}"
+            )
         return names, dict(said)
     found = file_channels(source[0], replace(facts, row=source[1], columns={}))
     if set(names) <= set(found):
@@ -126,7 +127,7 @@ def rig_channels(
     if len(found) != len(names):
         raise UsageError(
             f"{source[0]}: {len(found)} channels ({', '.join(found)}), the rig has {len(names)} ({', '.join(names)}); "
-            "give --channel NAME=COLUMN for each, or a rig with as many sensors (siggen init --sensors)"
+            f"give {in_rig('channels: {NAME: COLUMN}')} for each, or a rig with as many sensors (siggen init --sensors)"
         )
     return names, dict(zip(names, found, strict=True))
 
@@ -146,7 +147,8 @@ def check_speeds(rig: CalibratedRig, blocks: Iterable[HealthyBlock]) -> None:
             first = rig.drive.shafts[0].words
             raise UsageError(
                 f"{block.name}: {first} turns at {block.speed_hz:.4g} Hz; {rig.file} has operating_points.speed_hz "
-                f"from {low:g} to {high:g}. Does the tacho stand on {first}, with --tacho-pulses pulses per turn? If "
+                f"from {low:g} to {high:g}. Does the tacho stand on {first}, with `tacho_pulses` of the rig file per "
+                f"turn? If "
                 "the machine runs so, write its speed there"
             )
 

@@ -54,12 +54,11 @@ def baseline(
     from diagnostics.recordings.taken import channel_names, unit_or_unknown
     from diagnostics.records.gear_train import gear_names
 
-    train = gears.train("--teeth")
     sources = [source for said in healthy for source in file_rows(said)]
-    columns = recording.columns()
-    facts, span = recording.facts(), recording.speed_range_hz()
+    read = recording.read(sources[0])
+    train, facts, span = gears.train(read, "--teeth"), read.facts(), read.speed_range_hz()
     first = first_readable(sources, facts)
-    names = tuple(columns) or channel_names(first)
+    names = tuple(facts.columns) or channel_names(first)
     facts = unit_or_unknown(first, names, facts)
     with terminal_stage("healthy recordings", len(sources)) as advance:
         machine, refused = healthy_state(sources, names, facts, train, span, _loads(load), false_alarms, advance)

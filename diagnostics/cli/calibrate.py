@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from diagnostics.cli.recording_options import RecordingOptions, file_rows, two_numbers
+from diagnostics.cli.recording_options import RecordingOptions, file_rows
 from siggen.cli.echo import echo
 from siggen.cli.option_groups import grouped
 
@@ -28,10 +28,11 @@ class DrawOptions:
         typer.Option(
             min=2,
             max=200,
-            help="Gearboxes simulated for their bearing forces, about 1 s each; the page compares as many, up to 8.",
+            help="Gearboxes simulated for their bearing forces, about 1 s each, and transfer paths drawn of each "
+            "channel; "
+            "the page compares as many, up to 8.",
         ),
     ] = 24
-    paths: Annotated[int, typer.Option(min=1, max=200, help="Possible transfer paths, drawn per gearbox.")] = 24
     seed: Annotated[int, typer.Option(min=0, help="Seed of what is drawn.")] = 0
 
 
@@ -60,10 +61,10 @@ class UseOptions:
 
 @grouped
 def calibrate(
-    rig: Annotated[
+    machine: Annotated[
         Path,
         typer.Argument(
-            metavar="RIG", help="Configuration of the machine, as `siggen init` writes it; several meshes too."
+            metavar="MACHINE", help="Configuration of the machine, as `siggen init` writes it; several meshes too."
         ),
     ],
     healthy: Annotated[
@@ -78,9 +79,6 @@ def calibrate(
     out: Annotated[Path, typer.Option("--out", "-o", metavar="YAML", help="New configuration; data go beside it.")],
     *,
     recording: RecordingOptions,
-    torque: Annotated[
-        str, typer.Option("--torque", metavar="LOW,HIGH", help="Torque of the recordings [Nm]. Default: the rig's.")
-    ] = "",
     draws: DrawOptions,
     use: UseOptions,
 ) -> None:
@@ -89,7 +87,7 @@ def calibrate(
     Transfer paths, noise, its modulation, lines beside the mesh, speed and resolution follow from the recordings, with
     intervals from leaving recordings out. What they cannot tell is drawn per gearbox and named.
 
-    Example: siggen-diagnostics calibrate rig.yaml may.csv june.csv july.csv --fs 25600 --speed 14,26 -o mine.yaml
+    Example: siggen-diagnostics calibrate gearbox.yaml may.csv june.csv july.csv --fs 25600 --speed 14,26 -o mine.yaml
     """
     import siggen
     from diagnostics.base.extras import require_packages
@@ -105,21 +103,21 @@ def calibrate(
     check_new(out, use.inject)
     require_packages("the page of a calibration", "matplotlib")
     sources = [source for said in healthy for source in file_rows(said)]
+    read = recording.read(sources[0])
     with terminal_stage("the rig", 1):
-        machine = read_rig(rig)
-    teeth = machine.drive.teeth
-    names, columns = rig_channels(machine, sources[0], recording.columns(), recording.facts())
-    facts, span = recording.facts(columns), recording.speed_range_hz()
-    newtons = two_numbers(torque, "--torque", "15,60") if torque else None
+        described = read_rig(machine)
+    teeth = described.drive.teeth
+    names, columns = rig_channels(described, sources[0], read.facts())
+    facts, span = read.facts(columns), read.speed_range_hz()
     with terminal_stage("healthy recordings", 1) as advance:
         blocks = healthy_blocks(sources, names, facts, teeth, span)
         others = [source for entry in use.held_out or () for source in file_rows(entry)]
         judges = held_out_blocks(others, blocks, facts, teeth, span)
-        check_speeds(machine, (*blocks.blocks, *(judges.blocks if judges else ())))
+        check_speeds(described, (*blocks.blocks, *(judges.blocks if judges else ())))
         advance()
-    family, seed = family_size(draws.paths, len(names), len(machine.forces)), draws.seed
+    family, seed = family_size(draws.gearboxes, len(names), len(described.forces)), draws.seed
     with terminal_stage("gearboxes", draws.gearboxes) as advance:
-        found = calibrated(machine, blocks, newtons, draws.gearboxes, family, seed, advance)
+        found = calibrated(described, blocks, read.file.torque_nm, draws.gearboxes, family, seed, advance)
     write_calibration(found, out)
     for block in (*blocks.blocks, *(judges.blocks if judges else ())):
         echo(f"{block.name}: {block.speed_hz:.4f} Hz ({block.origin})", err=True)

@@ -9,12 +9,12 @@ from typing import Annotated
 
 import typer
 
-from diagnostics.cli.recording_options import ChannelColumns, Rate, file_rows, named_column
+from diagnostics.cli.recording_options import Rig, file_rows, said_by
 from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 
-READ_AS = re.compile(r"(?<![\w-])--(?!fs|load|channel)[a-z]")
-"""Options in messages about files that are not those of `check`, which reads files as the machine's first ones."""
+READ_AS = re.compile(r"(?<![\w-])--(?!rig|load)[a-z]")
+"""Options in messages about files that `check` has not: it reads files as the machine's first ones."""
 
 
 def check(
@@ -27,12 +27,10 @@ def check(
             metavar="NEW...", help="Recordings to judge, as those of `baseline`, the same channels.", show_default=False
         ),
     ],
-    fs: Rate = None,
-    channel: ChannelColumns = None,
+    rig: Rig = None,
     load: Annotated[
         float | None, typer.Option("--load", help="Load, in the unit of `baseline --load`; not after `--load slip`.")
     ] = None,
-    keep: Annotated[bool, typer.Option(help="Whether to add the verdicts to the machine's history.")] = True,
     as_json: AsJson = False,
 ) -> None:
     """Say of every recording: unchanged, changed, other load or speed, or cannot tell. No fault is named.
@@ -56,6 +54,7 @@ def check(
     )
     from diagnostics.machine.machine import load_machine
     from diagnostics.machine.machine_page import write_machine_page
+    from diagnostics.recordings.channel_factor import UNKNOWN_UNIT
     from diagnostics.recordings.measured_recording import read_recording
     from siggen.errors import EXIT_MISMATCH, EXIT_USAGE, UsageError
 
@@ -63,11 +62,16 @@ def check(
     known = load_machine(machine)
     load_note = load_sentence(known, load)
     sources = [source for said in new for source in file_rows(said)]
-    columns = {**known.facts.columns, **dict(map(named_column, channel or ()))}
+    read = said_by(rig, sources[0]).over(known.facts)
+    if known.facts.unit == UNKNOWN_UNIT != read.unit:
+        raise UsageError(
+            f"{rig}: unit: received {read.unit}; the references of {machine} state none, so levels cannot be compared. "
+            "Leave it out, or make the machine again with it"
+        )
     found, unread = [], {}
     with terminal_stage("recordings", len(sources)) as advance:
         for path, row in sources:
-            facts = replace(known.facts, row=row, fs_hz=fs or known.facts.fs_hz, columns=columns)
+            facts = replace(read, row=row)
             name = path.name if row is None else f"{path.name}:{row}"
             try:
                 found.append(check_recording(known, read_recording(path, known.channels, facts), name, load))
@@ -76,7 +80,7 @@ def check(
             advance()
     if unread and not found:
         raise UsageError("\n".join(unread.values()))
-    history = with_checks(past_checks(machine), found if keep else [])
+    history = with_checks(past_checks(machine), found)
     if as_json:
         echo_json({"machine": str(machine), "checks": [asdict(one) for one in found], "refused": unread})
     else:
@@ -90,8 +94,7 @@ def check(
     for note in [*(f"doubtful: {doubt}" for doubt in known.doubts), *([load_note] if load_note else [])]:
         echo(note, err=True)
     page = write_machine_page(known, machine, found, history)
-    if keep:
-        write_history(machine, history)  # last: a call that fails and is given again is in it once
+    write_history(machine, history)  # last: a call that fails and is given again is in it once
     echo(str(page), err=as_json)
     if any(one.verdict == CHANGED for one in found):
         raise typer.Exit(EXIT_MISMATCH)
@@ -100,10 +103,11 @@ def check(
 
 
 def _in_words_of_check(message: str, machine: Path) -> str:
-    """Return why a file cannot be read, and whose options are meant by those that `check` has not."""
+    """Return why a file cannot be read, and where `check` is told what other commands take as options."""
     if not READ_AS.search(message):
         return message
     return (
-        f"{message.rstrip('.')}. These are options of `siggen-diagnostics baseline`, which says how files of {machine} "
-        "are read: give the file the columns of the healthy ones, or write a new machine with them"
+        f"{message.rstrip('.')}. Options named here are those of `siggen-diagnostics baseline`, which says how files "
+        f"of "
+        f"{machine} are read; what differs in newer files `check` takes from a rig file: --rig rig.yaml"
     )

@@ -135,7 +135,7 @@ def explore(
     first = Path(targets[0])
     if out and out.is_dir():
         raise UsageError(f"--out {out}: received a folder; allowed is the name of a file, such as {out / 'set.html'}")
-    if (first / MACHINE_FILE).is_file() or gears.given or file_rows(targets[0])[0][0].is_file():
+    if (first / MACHINE_FILE).is_file() or gears.teeth or file_rows(targets[0])[0][0].is_file():
         place = first.with_suffix("") if first.is_file() else first
         path = _recordings_page(targets, (gears, recording), out or path_beside(place, "_explore.html"), full)
     elif len(targets) > 1:
@@ -194,8 +194,9 @@ def _recordings_page(
         name = folder.resolve().name
     else:
         gears, said = described
-        train = gears.train(f"{files[0]}: teeth unknown")
-        shown = of_files(files, train, said.facts(), said.speed_range_hz(), terminal_stage)
+        read = said.read(file_rows(files[0])[0])
+        train = gears.train(read, f"{files[0]}: teeth unknown")
+        shown = of_files(files, train, read.facts(), read.speed_range_hz(), terminal_stage)
         name = ", ".join(Path(target).name for target in files[:3])
     if beside is None:
         return write_recordings_page(name, shown, path, full=full, stage=terminal_stage)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -14,9 +14,6 @@ from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
-
-if TYPE_CHECKING:
-    from diagnostics.recordings.taken import RecordingFacts
 
 
 @grouped
@@ -56,10 +53,10 @@ def indicators(
 
     Example: siggen-diagnostics indicators run.csv --fs 25600 --teeth 25,56 --speed 14,26
     """
-    if gears.given or file_rows(targets[0])[0][0].is_file():
+    if gears.teeth or file_rows(targets[0])[0][0].is_file():
         if indicator:
             raise UsageError("--indicator: for sets only; leave it out for recordings")
-        _of_recordings(targets, gears, recording.facts(), recording.speed_range_hz(), out, as_json)
+        _of_recordings(targets, gears, recording, out, as_json)
         return
     if as_json:
         raise UsageError("--json: for recordings only; --out table.parquet or .csv has the indicators of a set")
@@ -68,7 +65,8 @@ def indicators(
     if out is not None and out.suffix in (".parquet", ".csv"):
         _table_alone(Path(targets[0]), out, indicator)
     else:
-        _ranked_tables(Path(targets[0]), out, recording.speed_range_hz(), indicator)
+        span = recording.read((Path(targets[0]), None)).speed_range_hz()
+        _ranked_tables(Path(targets[0]), out, span, indicator)
 
 
 def _ranked_tables(
@@ -129,8 +127,7 @@ def _table_alone(directory: Path, out: Path, indicator: OwnIndicators) -> None:
 def _of_recordings(
     targets: list[str],
     gears: GearOptions,
-    facts: RecordingFacts,
-    speed_range_hz: tuple[float, float] | None,
+    recording: RecordingOptions,
     out: Path | None,
     as_json: bool,
 ) -> None:
@@ -141,8 +138,10 @@ def _of_recordings(
     from diagnostics.records.gear_train import gear_names
 
     require_packages("the page of indicators", "matplotlib")
-    train = gears.train(f"{targets[0]}: teeth unknown")
     sources = [source for said in targets for source in file_rows(said)]
+    read = recording.read(sources[0])
+    train = gears.train(read, f"{targets[0]}: teeth unknown")
+    facts, speed_range_hz = read.facts(), read.speed_range_hz()
     found = []
     with terminal_stage("recordings", len(sources)) as advance:
         for path, row in sources:

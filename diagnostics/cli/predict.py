@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from diagnostics.cli.recording_options import RecordingOptions, Teeth, file_rows, two_gears
+from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows, two_gears
 from diagnostics.cli.set_options import OwnIndicators
 from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
@@ -33,9 +33,6 @@ class ReferenceOptions:
             "times.",
         ),
     ] = None
-    reference_fs: Annotated[float | None, typer.Option(help="Sampling rate [Hz] of the references, if it differs.")] = (
-        None
-    )
 
 
 @grouped
@@ -51,7 +48,7 @@ def predict(
         ),
     ],
     *,
-    teeth: Teeth = None,
+    gears: GearOptions,
     recording: RecordingOptions,
     healthy: ReferenceOptions,
     indicator: OwnIndicators = None,
@@ -80,10 +77,11 @@ def predict(
 
         loaded = load_model(model, load_indicators(indicator))
     sources = [source for said in file for source in file_rows(said)]
-    pair = _teeth(sources[0][0], teeth, loaded.facts.teeth)
-    facts, names, units = recording.facts(), loaded.facts.channels, loaded.facts.units
+    reading = recording.read(sources[0])
+    pair = _teeth(sources[0][0], gears.said(reading), loaded.facts.teeth)
+    facts, names, units = reading.facts(), loaded.facts.channels, loaded.facts.units
     references = tuple(
-        read_recording(path, names, _reference_facts(facts, path, number, healthy.reference_fs), units)
+        read_recording(path, names, _reference_facts(facts, path, number), units)
         for said in healthy.reference or ()
         for path, number in file_rows(said)
     )
@@ -92,7 +90,7 @@ def predict(
         for name, (path, row) in zip(_names(sources), sources, strict=True):
             try:
                 read = read_recording(path, names, replace(facts, row=row), units)
-                found[name] = predict_recording(loaded, read, pair, recording.speed_range_hz(), references)
+                found[name] = predict_recording(loaded, read, pair, reading.speed_range_hz(), references)
             except UsageError as error:
                 refused[name] = str(error)
             advance()
@@ -152,7 +150,12 @@ def _teeth(file: Path, said: str | None, known: tuple[tuple[int, int], ...]) -> 
     return two_gears(said)
 
 
-def _reference_facts(facts: RecordingFacts, path: Path, row: int | None, fs_hz: float | None) -> RecordingFacts:
-    """Return what is said about a reference: as about the recording, but for its own row and rate."""
-    states_rate = path.suffix.lower() == ".wav"
-    return replace(facts, row=row, fs_hz=fs_hz or (None if states_rate else facts.fs_hz))
+def _reference_facts(facts: RecordingFacts, path: Path, row: int | None) -> RecordingFacts:
+    """Return what is said about a reference: as about the recording, but for its row, and a rate that it states."""
+    from diagnostics.recordings.taken import take
+
+    unsaid = replace(facts, row=row, fs_hz=None)
+    try:
+        return unsaid if take(path, unsaid, say=False).fs_hz else replace(facts, row=row)
+    except UsageError:  # a time that the rate explains, or nothing that can be read
+        return replace(facts, row=row)

@@ -3,35 +3,103 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
 
 from siggen.errors import UsageError
 
 if TYPE_CHECKING:
+    from diagnostics.recordings.rig_file import RigFile
     from diagnostics.recordings.taken import RecordingFacts
     from siggen.columns.drivetrain import GearTrain
 
 ROWS = re.compile(r"\d+(,\d+)*")
 RPM = ("rpm", "1/min", "min-1", "u/min")
 SPEED = re.compile(r"(\d+(?:\.\d*)?|\.\d+) *(hz|rpm|1/min|min-1|u/min)?", re.IGNORECASE)
+Source: TypeAlias = tuple[Path, int | None]
+"""File, and row of a Parquet file with one record per row."""
 KNOWN_WITHIN = 0.03
 """Relative: slip of a loaded motor, or a nameplate's rounding."""
 
-Rate = Annotated[float | None, typer.Option("--fs", help="Sampling rate [Hz]. Not needed where the file states it.")]
-ChannelColumns = Annotated[
-    list[str] | None,
+Rig = Annotated[
+    Path | None,
     typer.Option(
-        "--channel",
-        metavar="NAME=COLUMN",
-        help="A channel and its column of the file. May be given several times. Default: columns by their names.",
+        "--rig",
+        metavar="YAML",
+        help="How recordings are read: channels, unit, sensitivity, tacho, teeth and all else that their files do "
+        "not say. "
+        "A file that is not there is written, with the columns of the first recording.",
+        show_default=False,
     ),
 ]
-Teeth = Annotated[str | None, typer.Option("--teeth", metavar="Z1,Z2", help="Teeth of pinion and gear.")]
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingOptions:
+    """How recordings are read."""
+
+    rig: Rig = None
+    fs: Annotated[
+        float | None, typer.Option("--fs", help="Sampling rate [Hz]. Not needed where the file states it.")
+    ] = None
+    speed: Annotated[
+        str | None,
+        typer.Option(
+            "--speed",
+            metavar="LOW,HIGH | SPEED",
+            help="Without a tacho: range of the first shaft's speed [Hz], or its speed where it is known to 3 %, in Hz "
+            "or as 1780rpm. Its angle is searched in the mesh lines.",
+        ),
+    ] = None
+
+    def read(self, first: Source) -> SaidReading:
+        """Return how recordings are read, by these options and the rig file, whose words options replace.
+
+        Raises
+        ------
+        UsageError
+            If there was no such rig file; it is written then, with the columns of the first recording.
+        """
+        return SaidReading(said_by(self.rig, first), self.fs, self.speed)
+
+
+@dataclass(frozen=True, slots=True)
+class SaidReading:
+    """How recordings are read: a rig file, and the options beside it."""
+
+    file: RigFile
+    fs_hz: float | None
+    speed: str | None
+
+    def facts(self, columns: dict[str, str] | None = None) -> RecordingFacts:
+        """Return how the files are read, with other columns than those that were named where such are given."""
+        from diagnostics.recordings.taken import RecordingFacts
+
+        found = self.file.over(RecordingFacts(tacho_by_name=not (self.speed or self.file.speed)))
+        fs_hz = found.fs_hz if self.fs_hz is None else self.fs_hz
+        return replace(found, fs_hz=fs_hz, columns=found.columns if columns is None else columns)
+
+    def speed_range_hz(self) -> tuple[float, float] | None:
+        """Return where the speed of the first shaft is searched.
+
+        Raises
+        ------
+        UsageError
+            If it is no range, or no speed.
+        """
+        said = self.speed or self.file.speed
+        if not said:
+            return None
+        if "," not in said:
+            return known_speed_range_hz(said)
+        low, high = two_numbers(said, "--speed", "14,26")
+        if not 0.0 < low < high < inf:
+            raise UsageError(f"--speed: received {low:g} to {high:g} Hz; allowed is 0 < low < high")
+        return low, high
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,12 +115,11 @@ class GearOptions:
         ),
     ] = None
 
-    @property
-    def given(self) -> bool:
-        """Whether the user named gears at all."""
-        return self.teeth is not None
+    def said(self, read: SaidReading) -> str | None:
+        """Return the teeth as they were said, by the option or the rig file."""
+        return self.teeth or read.file.teeth
 
-    def train(self, where: str) -> GearTrain:
+    def train(self, read: SaidReading, where: str) -> GearTrain:
         """Return the drivetrain of the machine.
 
         Raises
@@ -63,106 +130,33 @@ class GearOptions:
         from diagnostics.recordings.configured_train import configured_train
         from diagnostics.records.gear_train import pair_train
 
-        if self.teeth is None:
+        said = self.said(read)
+        if said is None:
             raise UsageError(
                 f"{where}: received nothing; give the teeth of pinion and gear, such as --teeth 25,56, or the "
                 "configuration with those of all meshes, --teeth gearbox.yaml"
             )
-        if self.teeth.endswith((".yaml", ".yml")):
-            return configured_train(Path(self.teeth))
-        return pair_train(two_gears(self.teeth))
+        if said.endswith((".yaml", ".yml")):
+            return configured_train(Path(said))
+        return pair_train(two_gears(said))
 
 
-@dataclass(frozen=True, slots=True)
-class RecordingOptions:
-    """How recordings are read."""
+def said_by(rig: Path | None, first: Source) -> RigFile:
+    """Return what a rig file says; nothing without one.
 
-    fs: Rate = None
-    speed: Annotated[
-        str | None,
-        typer.Option(
-            "--speed",
-            metavar="LOW,HIGH | SPEED",
-            help="Without a tacho: range of the first shaft's speed [Hz], or its speed where it is known to 3 %, in Hz "
-            "or as 1780rpm. Its angle is searched in the mesh lines.",
-        ),
-    ] = None
-    channel: ChannelColumns = None
-    unit: Annotated[
-        str | None,
-        typer.Option(
-            "--unit",
-            help="Unit of channels of which the file states none, such as m/s2, g, mg, mV or V. `baseline` and `check` "
-            "need none: levels are then relative.",
-        ),
-    ] = None
-    sensitivity: Annotated[
-        float | None,
-        typer.Option("--sensitivity", help="Sensitivity of the accelerometer in mV/g. Needed for mV and V."),
-    ] = None
-    full_scale: Annotated[
-        float | None, typer.Option("--full-scale", help="Full scale of an integer WAV file, in its unit.")
-    ] = None
-    tacho: Annotated[
-        str | None,
-        typer.Option(
-            "--tacho",
-            metavar="COLUMN",
-            help="Column that tells the angle: waveform or pulse times of a tacho, an angle, counts of an encoder. "
-            "Default: without --speed the one that is called so.",
-        ),
-    ] = None
-    tacho_pulses: Annotated[
-        int | None, typer.Option("--tacho-pulses", min=1, help="Pulses or counts of it per turn of the first shaft.")
-    ] = None
-    tacho_level: Annotated[
-        float | None,
-        typer.Option("--tacho-level", help="Level that the tacho's waveform crosses upwards. Default: its middle."),
-    ] = None
-    resample: Annotated[
-        float | None,
-        typer.Option(
-            "--resample", metavar="RATE", help="Lay samples at uneven times on this rate [Hz]; 0.4 of it is used."
-        ),
-    ] = None
+    Raises
+    ------
+    UsageError
+        If it is not there; it is written then, with the columns of the first recording.
+    """
+    from diagnostics.recordings.rig_file import RigFile, read_rig_file, write_rig_file
 
-    def columns(self) -> dict[str, str]:
-        """Return the column of every channel that was named."""
-        return dict(named_column(said) for said in self.channel or ())
-
-    def facts(self, columns: dict[str, str] | None = None) -> RecordingFacts:
-        """Return how the files are read, with other columns than those that were named where such are given."""
-        from diagnostics.recordings.taken import RecordingFacts
-
-        voltage = self.unit, self.sensitivity, self.full_scale
-        named = self.columns() if columns is None else columns
-        return RecordingFacts(
-            self.fs,
-            named,
-            *voltage,
-            self.tacho,
-            self.tacho_pulses,
-            tacho_level=self.tacho_level,
-            resample_hz=self.resample,
-            tacho_by_name=not self.speed,
-        )
-
-    def speed_range_hz(self) -> tuple[float, float] | None:
-        """Return where the speed of the first shaft is searched.
-
-        Raises
-        ------
-        UsageError
-            If it is no range, or no speed.
-        """
-        if not self.speed:
-            return None
-        if "," not in self.speed:
-            return known_speed_range_hz(self.speed)
-        low, high = two_numbers(self.speed, "--speed", "14,26")
-        if not 0.0 < low < high < inf:
-            raise UsageError(f"--speed: received {low:g} to {high:g} Hz; allowed is 0 < low < high")
-        return low, high
+    if rig is None:
+        return RigFile()
+    if rig.exists():
+        return read_rig_file(rig)
+    write_rig_file(rig, first)
+    raise UsageError(f"--rig {rig}: was not there; written with the columns of {first[0]}. Fill it in, and run again")
 
 
 def known_speed_range_hz(said: str) -> tuple[float, float]:
@@ -215,17 +209,3 @@ def two_gears(said: str) -> tuple[int, int]:
     if min(first, second) < 3 or first % 1 or second % 1:
         raise UsageError(f"--teeth: received {said}; allowed are two whole numbers from 3 on")
     return int(first), int(second)
-
-
-def named_column(said: str) -> tuple[str, str]:
-    """Return channel and column of NAME=COLUMN.
-
-    Raises
-    ------
-    UsageError
-        If it has another form.
-    """
-    name, equals, column = said.partition("=")
-    if not equals or not name or not column:
-        raise UsageError(f"--channel: received {said!r}; allowed is NAME=COLUMN, e.g. bearing_vertical=ch1")
-    return name, column

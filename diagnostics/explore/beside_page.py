@@ -21,6 +21,7 @@ from diagnostics.explore.set_page import LookOptions, set_name
 from diagnostics.explore.set_source import chosen_records, missing_parts, set_source
 from diagnostics.indicators.table import record_table
 from diagnostics.page.template import write_page
+from diagnostics.recordings.in_rig import in_rig
 from diagnostics.records.recording import Recording
 from diagnostics.records.state_classes import HEALTHY
 from siggen.dataset.reading import Dataset
@@ -95,7 +96,8 @@ def channel_mapping(measured: PageSource, simulated: PageSource) -> dict[str, st
     if len(measured.channels) != len(simulated.channels):
         raise UsageError(
             f"set beside: recordings have the channels {', '.join(measured.channels)}, the set "
-            f"{', '.join(simulated.channels)}; allowed: as many on both sides. Choose with --channel NAME=COLUMN"
+            f"{', '.join(simulated.channels)}; allowed: as many on both sides. Choose: "
+            f"{in_rig('channels: {NAME: COLUMN}')}"
         )
     return dict(zip(measured.channels, simulated.channels, strict=True))
 

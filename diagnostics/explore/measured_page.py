@@ -17,6 +17,7 @@ from diagnostics.explore.payload import PageSource, RecordList, packed_indicator
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.machine.recording_indicators import RecordingIndicators
 from diagnostics.page.template import write_page
+from diagnostics.recordings.in_rig import in_rig
 from diagnostics.records.gear_train import gear_names, in_column
 from diagnostics.records.recording import Recording
 from diagnostics.records.state_classes import HEALTHY
@@ -88,7 +89,7 @@ def _check_alike(first: RecordingIndicators, other: RecordingIndicators) -> None
     if channels[0] != channels[1]:
         raise UsageError(
             f"{other.name}: has the channels {', '.join(channels[1])}, {first.name} {', '.join(channels[0])}; allowed: "
-            "the same ones. Name them alike with --channel NAME=COLUMN"
+            f"the same ones. Name them alike: {in_rig('channels: {NAME: COLUMN}')}"
         )
 
 

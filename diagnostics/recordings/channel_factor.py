@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from diagnostics.recordings.in_rig import in_rig
 from diagnostics.recordings.units import (
     ACCELERATION,
     ACCELERATIONS,
@@ -50,7 +51,7 @@ def factor_to_m_s2(unit: str, sensitivity_mv_per_g: float | None = None) -> floa
     if sensitivity_mv_per_g is None or not sensitivity_mv_per_g > 0.0:
         raise UsageError(
             f"unit {unit}: received sensitivity {sensitivity_mv_per_g}; a voltage needs the accelerometer's, in mV per "
-            "g, from its calibration sheet: --sensitivity 100"
+            f"g, from its calibration sheet: {in_rig('sensitivity_mv_per_g: 100')}"
         )
     return known.factor / sensitivity_mv_per_g * STANDARD_GRAVITY_M_S2
 
@@ -92,27 +93,27 @@ def channel_factor(
         if stated:
             raise UsageError(
                 f"{path}: states the unit {stated[:40]!r} of {column}; the machine's references state none, so their "
-                "levels cannot be compared. Make the machine again with --unit"
+                "levels cannot be compared. Make the machine again with its unit"
             )
         return 1.0
     if stated and known is not None and known.quantity not in (ACCELERATION, VOLTAGE):
         raise UsageError(
             f"{path}: states the unit {stated[:40]!r} of {column}, no acceleration ({known.quantity}); allowed are "
-            f"{', '.join(ALLOWED)}. Name a column of an accelerometer (--channel NAME=COLUMN), or correct the file"
+            f"{', '.join(ALLOWED)}. Name a column of an accelerometer, {in_rig('channels: {NAME: COLUMN}')}, or "
+            f"correct the file"
         )
     if known is not None and said and known != named:
         raise UsageError(
-            f"{path}: states the unit {stated} of {column}, received --unit {said}; leave --unit out or "
-            "correct the file"
+            f"{path}: states the unit {stated} of {column}, the rig file {said}; leave `unit` out or correct the file"
         )
     if stated and known is None and not said:
         raise UsageError(
             f"{path}: states the unit {stated[:40]!r} of {column}; allowed are {', '.join(ALLOWED)}. Say what the "
-            "values are, e.g. --unit g"
+            f"values are: {in_rig('unit: g')}"
         )
     if not (stated or said):
         raise UsageError(
-            f"{path}: no unit of {column} is stated. Say what the values are, such as --unit g or --unit m/s2; "
+            f"{path}: no unit of {column} is stated. Say what the values are, {in_rig('unit: g')}; "
             f"allowed are {', '.join(ALLOWED)}"
         )
     return factor_to_m_s2(said or stated or "", mv_per_g)
@@ -123,7 +124,7 @@ def _check_same(path: Path, column: str, found: str | None, wanted: str) -> None
     if found == wanted or (found and known_unit(found) == known_unit(wanted) is not None):
         return
     received = f"the unit {found[:40]!r}" if found else "no unit"
-    way_out = f"Name a column in {wanted} (--channel NAME=COLUMN), or take a model of other channels"
+    way_out = f"Name a column in {wanted}, {in_rig('channels: {NAME: COLUMN}')}, or take a model of other channels"
     if not found:
-        way_out = f"If the file holds {wanted}, say so: --unit {wanted}"
+        way_out = f"If the file holds {wanted}, say so: {in_rig(f'unit: {wanted}')}"
     raise UsageError(f"{path}: {column}: received {received}; allowed: {wanted}, as it is. {way_out}")

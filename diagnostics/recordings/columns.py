@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import shlex
 from pathlib import Path
 
 import numpy as np
 
 from diagnostics.recordings.columns_apart import columns_read_apart
+from diagnostics.recordings.in_rig import in_rig
 from diagnostics.recordings.recorded_columns import LARGEST, Columns
 from diagnostics.records.usable_records import LARGEST_CLIPPED_SHARE, clipped_share
 from siggen.errors import UsageError
@@ -32,7 +32,7 @@ def signal_problem(signal: np.ndarray, column: str) -> str:
     if share > PULSE_SHARE:
         return (
             f"{share:.2%} of the samples stand at {signal.min():g} or {signal.max():g}, as pulses do; if these are "
-            f"those of the tacho, say so: --tacho {shlex.quote(column)}; else name the channels: --channel NAME=COLUMN"
+            f"those of the tacho, say so: {in_rig(f'tacho: {column}')}; else name the `channels` there"
         )
     if share > LARGEST_CLIPPED_SHARE:
         return (

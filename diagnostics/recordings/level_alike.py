@@ -39,7 +39,7 @@ def level_note(recording: MeasuredRecording) -> str:
     """Return what is implausible in the level of a recording, or an empty text."""
     low, high = PLAUSIBLE_RMS_M_S2
     found = [
-        f"rms of {name} is {signal.std():.3g} m/s2, usual: {low:g} to {high:g}; is --unit that of the file?"
+        f"rms of {name} is {signal.std():.3g} m/s2, usual: {low:g} to {high:g}; is `unit` of the rig file true?"
         for name, signal in recording.channels.items()
         if not low < float(signal.std()) < high
     ]

@@ -13,6 +13,7 @@ import numpy as np
 
 from diagnostics.recordings.channel_factor import ACCELERATION_UNIT, UNKNOWN_UNIT, channel_factor
 from diagnostics.recordings.columns import signal_problem
+from diagnostics.recordings.in_rig import in_rig
 from diagnostics.recordings.recorded_columns import OWN_TACHO, Columns
 from diagnostics.recordings.roles import ColumnUse
 from diagnostics.recordings.taken import RecordingFacts, TakenRecording, channel_names, column_called, take
@@ -130,7 +131,7 @@ def read_recording(
         listed = ", ".join(f"{name} {signal.size}" for name, signal in signals.items())
         raise UsageError(
             f"{path}: channels differ in their number of samples ({listed}); record them together, or name those of "
-            "one length: --channel NAME=COLUMN"
+            f"one length: {in_rig('channels: {NAME: COLUMN}')}"
         )
     fs_hz, factors = _rate_and_factors(taken, mapping, wanted, facts)
     channels = {name: factors[name] * signal for name, signal in signals.items()}
@@ -175,7 +176,8 @@ def _refuse_other_roles(taken: TakenRecording, mapping: Mapping[str, str], wante
             continue
         raise UsageError(
             f"{taken.path}: column {column} is a {one.role} ({one.why}), not channel {name}; allowed are columns of "
-            "vibration. Name another (--channel NAME=COLUMN), or write its unit behind its name in the file: a [g]"
+            f"vibration. Name another, {in_rig(f'channels: {{{name}: COLUMN}}')}, or write its unit behind its name "
+            f"in the file: a [g]"
         )
 
 
@@ -191,10 +193,11 @@ def _mapping(path: Path, taken: TakenRecording, names: tuple[str, ...], said: Ma
     chosen = {name: column_called(found, name, said.get(name)) or alone for name in names}
     missing = [said.get(name, name) for name, column in chosen.items() if not column]
     if missing:
-        example = " ".join(f"--channel {name}=COLUMN" for name in names)
+        example = "channels: {" + ", ".join(f"{name}: COLUMN" for name in names) + "}"
         raise UsageError(
             f"{path}: no column {', '.join(missing)}; wanted are the channels {', '.join(names)}, the file holds "
-            f"{', '.join(list(found.values)[:20])}. Say which is which: {example}. They have to be the same sensors in "
+            f"{', '.join(list(found.values)[:20])}. Say which is which: {in_rig(example)}. They have to be the same "
+            f"sensors in "
             "the same directions."
         )
     if len(set(chosen.values())) < len(chosen):
@@ -204,7 +207,7 @@ def _mapping(path: Path, taken: TakenRecording, names: tuple[str, ...], said: Ma
 
 def _factor(taken: TakenRecording, column: str, facts: RecordingFacts, wanted: str) -> float:
     one = taken.column(column)
-    by_user = one.unit == UNKNOWN_UNIT or one.why.endswith("--unit")
+    by_user = one.unit == UNKNOWN_UNIT or one.why.endswith("the rig file")
     stated = None if by_user else one.unit or None
     return channel_factor(taken.path, column, stated, facts.unit, facts.sensitivity_mv_per_g, wanted)
 
@@ -215,7 +218,7 @@ def _full_scale(path: Path, found: Columns, facts: RecordingFacts) -> float:
     if facts.full_scale is None or not facts.full_scale > 0.0:
         raise UsageError(
             f"{path}: holds shares of full scale; received full scale {facts.full_scale}. Say what it means in "
-            f"{facts.unit or 'its unit'}, e.g. --full-scale 50"
+            f"{facts.unit or 'its unit'}, such as {in_rig('full_scale: 50')}"
         )
     return facts.full_scale
 
@@ -232,7 +235,7 @@ def _tacho(taken: TakenRecording, fs_hz: float, facts: RecordingFacts) -> np.nda
         seen = ", ".join(f"{name} {0.5 * (low + high):.4g} Hz" for name, (low, high) in spans.items())
         raise UsageError(
             f"{taken.path}: columns that tell the speed of the first shaft disagree ({seen}). Say which is on it, and "
-            f"its pulses per turn: --tacho {columns[0]} --tacho-pulses 1; or leave them out: --speed"
+            f"its pulses per turn: {in_rig(f'tacho: {columns[0]}, tacho_pulses: 1')}; or leave them out: --speed"
         )
     return turns[columns[0]] if columns else None
 
@@ -248,7 +251,8 @@ def _turns(taken: TakenRecording, column: str, fs_hz: float, facts: RecordingFac
     if pulses is None:
         what = "a turn of the encoder counts to" if one.role is ColumnUse.COUNTER else "pulses per turn it gives"
         raise UsageError(
-            f"{path}: column {column} is a {one.role}; say how many {what}: --tacho-pulses 1. Without it: --speed"
+            f"{path}: column {column} is a {one.role}; say how many {what}: {in_rig('tacho_pulses: 1')}. Without it: "
+            f"--speed"
         )
     if one.role is ColumnUse.ANGLE:
         raise UsageError(
@@ -261,7 +265,7 @@ def _turns(taken: TakenRecording, column: str, fs_hz: float, facts: RecordingFac
     if times_s.size < FEWEST_PULSES or not np.isfinite(times_s).all() or not (np.diff(times_s) > 0).all():
         raise UsageError(
             f"{path}: {times_s.size} pulses in column {column}, or not increasing; an angle needs two or more. Name "
-            "the level they cross (--tacho-level), or leave --tacho out and give --speed."
+            f"the level they cross, {in_rig('tacho_level: 2.5')}, or leave `tacho` out and give --speed."
         )
     return np.asarray(times_s[::pulses])
 
@@ -273,7 +277,8 @@ def _tacho_columns(taken: TakenRecording, facts: RecordingFacts) -> list[str]:
         column = column_called(found, facts.tacho, facts.tacho)
         if column is None:
             raise UsageError(
-                f"{taken.path}: no column {facts.tacho} for --tacho; the file holds {', '.join(found.values)}"
+                f"{taken.path}: no column {facts.tacho}, which `tacho` of the rig file names; the file holds "
+                f"{', '.join(found.values)}"
             )
         return [column]
     if not facts.tacho_by_name:
@@ -314,7 +319,7 @@ def _whole_turns(path: Path, column: str, turns: np.ndarray, fs_hz: float) -> np
     if not np.isfinite(turns).all() or (rising - turns).max() > 0.5 or rising[-1] - rising[0] < FEWEST_PULSES:
         raise UsageError(
             f"{path}: column {column} turns by {np.ptp(turns):.3g}, or back; allowed: an angle that rises by two turns "
-            "or more. Is --tacho-pulses right? Else leave --tacho out and give --speed"
+            "or more. Is `tacho_pulses` of the rig file right? Else leave `tacho` out and give --speed"
         )
     marks = np.arange(np.ceil(rising[0]), np.floor(rising[-1]) + 1.0)
     after = np.clip(np.searchsorted(rising, marks), 1, rising.size - 1)

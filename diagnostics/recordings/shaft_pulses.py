@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnostics.recordings.in_rig import in_rig
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.records.gear_train import Planets, meshes_of
 from diagnostics.signal.order_domain import geared_pulses
@@ -97,12 +98,13 @@ def shaft_pulses(
         if recording.tacho_s.size > 1 and not low <= found.speed_hz <= high:
             raise UsageError(
                 f"{recording.path}: the tacho gives {found.speed_hz:.4g} Hz of the first shaft, outside of {low:g} to "
-                f"{high:g} Hz. Is it on this shaft, with as many pulses per turn (--tacho-pulses)?"
+                f"{high:g} Hz. Is it on this shaft, with as many pulses per turn (`tacho_pulses` of the rig file)?"
             )
     elif (span := speed_range_hz or recording.speed_span_hz) is None:
         raise UsageError(
-            f"{recording.path}: neither tacho nor speed; name the tacho's column with --tacho, the speed with --speed, "
-            "or the range the first shaft can have run in with --speed LOW,HIGH"
+            f"{recording.path}: neither tacho nor speed; name the tacho's column, {in_rig('tacho: COLUMN')}, the "
+            f"speed with "
+            "--speed, or the range the first shaft can have run in with --speed LOW,HIGH"
         )
     else:
         found = _by_mesh_lines(recording, teeth, span)
@@ -137,7 +139,7 @@ def _against_carrier(recording: MeasuredRecording, planets: Planets) -> ShaftPul
     if recording.tacho_s is None:
         raise UsageError(
             f"{recording.path}: no tacho; the speed of planetary sets is not searched in lines, since passing planets "
-            "move them. Name the column of a tacho on the sun's shaft with --tacho"
+            f"move them. Name the column of a tacho on the sun's shaft: {in_rig('tacho: COLUMN')}"
         )
     pulses = geared_pulses(recording.tacho_s, planets.sun_turns)
     if pulses.size < 2:

@@ -16,6 +16,7 @@ import numpy as np
 
 from diagnostics.recordings.channel_factor import UNKNOWN_UNIT
 from diagnostics.recordings.columns import read_columns
+from diagnostics.recordings.in_rig import in_rig
 from diagnostics.recordings.recorded_columns import OWN_TACHO, Columns
 from diagnostics.recordings.roles import ColumnUse, named_role
 from diagnostics.recordings.sample_times import (
@@ -190,7 +191,7 @@ def take(path: Path, facts: RecordingFacts, *, say: bool = True) -> TakenRecordi
     notes = [*found.notes, *notes]
     if uneven is not None:
         found, fs_hz, note = _resampled(path, found, columns, uneven, facts)
-        rate_why, notes = "--resample", [*notes, note]
+        rate_why, notes = "the rig file", [*notes, note]
     taken = TakenRecording(path, found, tuple(columns), fs_hz, rate_why, tuple(notes))
     if say:
         say_taken(taken)
@@ -229,7 +230,7 @@ def channel_columns(taken: TakenRecording) -> dict[str, str]:
     if not 1 <= len(own or names) <= MOST_CHANNELS:
         raise UsageError(
             f"{taken.path}: {len(own or names)} columns that could be vibration; allowed: 1 to {MOST_CHANNELS}. Name "
-            "those that you mean: --channel NAME=COLUMN"
+            f"those that you mean: {in_rig('channels: {NAME: COLUMN}')}"
         )
     if own:
         return {name.removeprefix(prefix).removesuffix(suffix): name for name in own}
@@ -298,7 +299,7 @@ def _roles(found: Columns, units: Mapping[str, tuple[str, str]], facts: Recordin
             role, by = ColumnUse.VIBRATION, "the file says so"
         elif name in (OWN_TACHO, facts.tacho):
             role = role if role in (ColumnUse.ANGLE, ColumnUse.COUNTER) else ColumnUse.TACHO
-            by = "--tacho" if name == facts.tacho else "name"
+            by = "the rig file" if name == facts.tacho else "name"
         elif role is ColumnUse.VIBRATION and not is_acceleration and values.size == samples:
             role, by = _role_of_values(values, timed=timed) or (role, by)
         factor = None
@@ -309,7 +310,7 @@ def _roles(found: Columns, units: Mapping[str, tuple[str, str]], facts: Recordin
             unit, why = (
                 (unit, why)
                 if unit
-                else (said or UNKNOWN_UNIT, {"": "", UNKNOWN_UNIT: "levels are relative"}.get(said, "--unit"))
+                else (said or UNKNOWN_UNIT, {"": "", UNKNOWN_UNIT: "levels are relative"}.get(said, "the rig file"))
             )
         reasons = [by if not by.startswith("unit ") else "", why]
         columns.append(TakenColumn(name, role, unit, factor, "; ".join(filter(None, reasons)) or "no other role"))
@@ -361,9 +362,12 @@ def _rate(
         rate, why = (rate, why) if rate is not None else (times.fs_hz, times.why)
     alike = STATED_ALIKE if found.fs_hz or times is None or "coarse" not in times.why else TIMES_ALIKE
     if rate and said and abs(said / rate - 1.0) > alike:
-        raise UsageError(f"{path}: states {rate:g} Hz, received --fs {said:g}; leave --fs out or correct the file")
+        raise UsageError(
+            f"{path}: states {rate:g} Hz, received {said:g} Hz by --fs or the rig file; leave it out or correct the "
+            f"file"
+        )
     uneven = times.uneven_s if times is not None else None
-    return (said or rate), ("--fs" if said else why), uneven, columns
+    return (said or rate), ("as said" if said else why), uneven, columns
 
 
 def _cut(found: Columns, columns: list[TakenColumn]) -> tuple[Columns, list[str]]:
@@ -390,11 +394,12 @@ def _resampled(
     if rate_hz is None or not 0.0 < rate_hz <= mean_hz * 1.01:
         name = next(column.name for column in columns if column.role is ColumnUse.TIME)
         steps = np.diff(times_s) * mean_hz
-        came = "" if rate_hz is None else f", received --resample {rate_hz:g}"
+        came = "" if rate_hz is None else f", received `resample_hz: {rate_hz:g}`"
         raise UsageError(
             f"{path}: column {name}: its times are uneven, steps of {steps.min():.3f} to {steps.max():.3f} times the "
-            f"mean one{came}; allowed: equal steps. --resample {mean_hz:.0f} (or less) lays the samples on even times "
-            f"by a spline; {USED_BAND:g} of that rate is then used"
+            f"mean one{came}; allowed: equal steps. {in_rig(f'resample_hz: {mean_hz:.0f}')} (or less) lays the "
+            f"samples on "
+            f"even times by a spline; {USED_BAND:g} of that rate is then used"
         )
     size = min(times_s.size, *(v.size for c in columns if (v := found.values[c.name]).size >= times_s.size * 0.999))
     times_s = times_s[:size]

@@ -7,6 +7,7 @@ face are checked. The pictures are those of the pages that `indicators` and `che
 from __future__ import annotations
 
 import base64
+import json
 import re
 import subprocess
 import tempfile
@@ -18,7 +19,8 @@ from page_pictures import FIGURES
 
 import siggen
 
-GEARS = ("--fs", f"{FS_HZ:g}", "--unit", "m/s2", "--teeth", "18,47", "--speed", "33,37")
+GEARS = ("--fs", f"{FS_HZ:g}", "--rig", "reading.yaml")
+READING = {"unit": "m/s2", "teeth": [18, 47], "speed": [33, 37]}
 REFERENCES, HEALTHY, DURATION_S = 4, 7, 4.0
 PICTURE = re.compile(r"data:image/png;base64,([A-Za-z0-9+/=]+)")
 
@@ -44,6 +46,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         files = recorded(folder)
+        (folder / "reading.yaml").write_text(json.dumps(READING), encoding="utf-8")
         for line in (
             ("indicators", files[0], *GEARS, "--out", "indicators"),
             ("baseline", *files[:REFERENCES], *GEARS, "--out", "rig"),

@@ -112,6 +112,7 @@ def test_an_option_that_the_command_lacks_is_noticed(text: str, found: bool) -> 
 
 
 def test_check_says_whose_options_a_message_of_a_file_names() -> None:
-    said = _in_words_of_check("a.csv: its times are uneven. --resample 5000 lays them on even ones.", Path("rig"))
-    assert "These are options of `siggen-diagnostics baseline`" in said
-    assert _in_words_of_check("a.csv: give the rate, e.g. --fs 51200", Path("rig")).endswith("--fs 51200")
+    said = _in_words_of_check("a.csv: give the rate, e.g. --fs 51200", Path("rig"))
+    assert "are those of `siggen-diagnostics baseline`" in said
+    assert said.endswith("--rig rig.yaml")
+    assert _in_words_of_check("a.csv: no unit; see --rig", Path("rig")).endswith("no unit; see --rig")

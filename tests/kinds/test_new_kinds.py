@@ -216,7 +216,7 @@ def test_a_file_of_one_record_says_what_its_channel_holds(folder: Path) -> None:
     for given in (None, "g", "um/m"):
         with pytest.raises(UsageError, match=r"states the unit 'um/m' .* no acceleration") as refused:
             read_recording(file, names, RecordingFacts(unit=given))
-        assert "--unit g" not in str(refused.value)
+        assert "unit: g" not in str(refused.value)
     read = read_recording(file, names, RecordingFacts(), ("um/m",))
     assert read.units == {"seat_vertical": "um/m"}
     np.testing.assert_array_equal(read.channels["seat_vertical"], read_columns(file).values[SIGNAL])

@@ -24,7 +24,7 @@ from tests.publication.conftest import FACTS
 from tests.shared import shared_folder
 from tests.walks.walking import FS_HZ, recorded, run
 
-DESCRIBED = "--unit g --teeth 18,47 --speed 28,32"
+DESCRIBED = "--rig reading.yaml"
 
 
 class Line(NamedTuple):
@@ -65,13 +65,12 @@ LINES = {
     "siggen-diagnostics report": Line("set --no-cnn --out OUT/report"),
     "siggen-diagnostics score": Line("committed entries/mine.csv --out OUT/scores.csv"),
     "siggen-diagnostics predict": Line(
-        "models set/data/test-00000.parquet:1 --fs 12800 --teeth 18,47 --tacho tacho_s --out OUT/prediction"
+        "models set/data/test-00000.parquet:1 --fs 12800 --teeth 18,47 --rig tacho.yaml --out OUT/prediction"
     ),
     "siggen-diagnostics baseline": Line(f"april.wav may.wav june.wav july.wav {DESCRIBED} --out OUT/machine"),
     "siggen-diagnostics check": Line("IN/machine august.wav", code=4),
     "siggen-diagnostics calibrate": Line(
-        "rig.yaml april.wav may.wav june.wav july.wav --unit g --speed 28,32 --gearboxes 2 --paths 2 "
-        "--out OUT/mine.yaml",
+        "rig.yaml april.wav may.wav june.wav july.wav --rig reading.yaml --gearboxes 2 --out OUT/mine.yaml",
     ),
     "siggen-diagnostics explore": Line(f"may.wav june.wav {DESCRIBED} --out OUT/look.html"),
 }
@@ -136,6 +135,8 @@ MADE: dict[str, str | Callable[[Path, pytest.TempPathFactory], object]] = {
     "short.yaml": _yaml(SHORT),
     "many.yaml": _yaml(MANY),
     "publication.yaml": _yaml(FACTS),
+    "reading.yaml": _yaml({"unit": "g", "teeth": [18, 47], "speed": [28, 32]}),
+    "tacho.yaml": _yaml({"tacho": "tacho_s"}),
     "april.wav": _recording(8),
     "may.wav": _recording(0),
     "june.wav": _recording(1),

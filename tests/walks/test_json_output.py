@@ -12,7 +12,7 @@ from scipy.io import wavfile
 from tests.command import command
 from tests.walks.walking import FS_HZ, printed, recorded
 
-DESCRIBED = "--unit g --teeth 18,47 --speed 28,32"
+DESCRIBED = "--rig reading.yaml"
 MONTHS = ("april", "may", "june", "july", "august")
 
 
@@ -22,6 +22,7 @@ def machine(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("machine")
     for seed, (name, depth) in enumerate([*((month, 0.0) for month in MONTHS), ("worn", 0.7)]):
         wavfile.write(folder / f"{name}.wav", round(FS_HZ), recorded(seed, depth).astype(np.float32))
+    (folder / "reading.yaml").write_text("{unit: g, teeth: [18, 47], speed: [28, 32]}\n")
     with chdir(folder):
         done = command(
             "diagnostics", *f"baseline april.wav may.wav june.wav july.wav {DESCRIBED} --out machine".split()

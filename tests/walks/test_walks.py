@@ -15,12 +15,13 @@ from scipy.io import wavfile
 
 import siggen
 from tests.publication.conftest import FACTS
+from tests.rig_file import rig_file
 from tests.walks.walking import FS_HZ, printed, recorded, walk
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "understand" / "baselines.md"
 STATES = ("healthy", "slight", "severe")
 SIZE = "--set specimens=6 --set duration_s=0.3 --set 'splits={train: 10, validation: 4, test: 6}'"
-RECORDING = "set/data/test-00000.parquet:4 --fs 25600 --teeth 18,47 --tacho tacho_s"
+RECORDING = "set/data/test-00000.parquet:4 --fs 25600 --rig tacho.yaml"
 
 
 @pytest.fixture(scope="session")
@@ -33,6 +34,7 @@ def rig(tmp_path_factory: pytest.TempPathFactory) -> Path:
     raw["states"] = {**raw["states"], "healthy_again": None, "moderate": None, "sham": None}
     raw["states"]["severe"] |= {"grows": "slight"}
     (folder / "rig.yaml").write_text(yaml.safe_dump(raw, sort_keys=False))
+    (folder / "tacho.yaml").write_text("teeth: 18,47\ntacho: tacho_s\n")
     walk(folder, f"siggen generate rig.yaml {SIZE} --out set --executor serial")
     return folder
 
@@ -112,7 +114,7 @@ def test_from_recordings_of_a_healthy_machine_to_a_verdict(tmp_path: Path) -> No
         (tmp_path / f"{month}.csv").write_text(f"time;vibration;key\n{text}\n")
     for seed, (month, depth) in enumerate({"august": 0.0, "september": 0.7}.items(), 8):
         wavfile.write(tmp_path / f"{month}.wav", round(FS_HZ), recorded(seed, depth).astype(np.float32))
-    described = "--channel vibration=2 --unit g --teeth 18,47 --speed 28,32"
+    described = " ".join(rig_file(tmp_path, channels={"vibration": 2}, unit="g", teeth="18,47", speed="28,32"))
     walk(tmp_path, f"siggen-diagnostics baseline april.csv may.csv june.csv july.csv {described} --out machine")
     said = walk(tmp_path, "siggen-diagnostics check machine august.wav september.wav", code=4)
     assert "august.wav: unchanged" in said

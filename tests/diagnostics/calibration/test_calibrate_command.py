@@ -17,6 +17,7 @@ from diagnostics.cli.app import app
 from siggen.cli.app import app as siggen_app
 from siggen.errors import UsageError
 from tests.diagnostics.calibration.hidden_machine import FS_HZ, channel_data, hidden_recordings
+from tests.rig_file import rig_file
 
 GEARBOXES = 2
 
@@ -53,9 +54,9 @@ def calibrated(recordings: list[Path]) -> tuple[Path, Path, str]:
     made = CliRunner().invoke(siggen_app, ["init", *drawing, "--out", str(rig)], catch_exceptions=False)
     assert made.exit_code == 0, made.output
     rig.write_text(rig.read_text().replace("duration_s: 1.5 ", "duration_s: 0.75 "))  # half as long to simulate
-    said = ["calibrate", str(rig), *map(str, recordings[:3]), "--fs", "25600", "--tacho-pulses", "1"]
+    said = ["calibrate", str(rig), *map(str, recordings[:3]), "--fs", "25600", *rig_file(folder, tacho_pulses=1)]
     judged = ["--held-out", str(recordings[3])]
-    options = ["--gearboxes", "2", "--paths", "4", *judged, "--out", str(mine)]
+    options = ["--gearboxes", "4", *judged, "--out", str(mine)]
     result = CliRunner().invoke(app, [*said, *options], catch_exceptions=False)
     assert result.exit_code == 0, result.output
     return rig, mine, result.output
@@ -96,8 +97,8 @@ def test_recordings_at_half_the_rate_of_the_rig_take_one_call(
         slow.append(tmp_path / f"{file.stem}.npz")
         halved = np.stack([*decimate(columns[:, :2], 2, axis=0).T, columns[::2, 2]])
         np.savez(slow[-1], **dict(zip(("ch1_m_s2", "ch2_m_s2", "tacho"), halved, strict=True)))
-    said = ["calibrate", str(calibrated[0]), *map(str, slow), "--fs", "12800", "--tacho-pulses", "1"]
-    few = ["--gearboxes", "2", "--paths", "2", "--out", str(tmp_path / "slow.yaml")]
+    said = ["calibrate", str(calibrated[0]), *map(str, slow), "--fs", "12800", *rig_file(tmp_path, tacho_pulses=1)]
+    few = ["--gearboxes", "2", "--out", str(tmp_path / "slow.yaml")]
     result = CliRunner().invoke(app, [*said, *few], catch_exceptions=False)
     assert result.exit_code == 0, result.output
     config = siggen.load_config(tmp_path / "slow.yaml")
@@ -113,15 +114,14 @@ def test_every_gearbox_of_the_set_draws_its_own_path(calibrated: tuple[Path, Pat
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("wrong", "said"),
     [
-        (["--teeth-of-rig-do-not-fit"], "No such option"),
-        (["--channel", "lid=ch1"], "the rig has the channels"),
-        (["--unit", "mV"], "states the unit m/s2"),
+        ({"channels": {"lid": "ch1"}}, "the rig has the channels"),
+        ({"unit": "mV"}, "states the unit m/s2"),
     ],
 )
 def test_a_call_that_cannot_work_says_why(
-    recordings: list[Path], calibrated: tuple[Path, Path, str], options: list[str], said: str
+    recordings: list[Path], calibrated: tuple[Path, Path, str], wrong: dict[str, object], said: str, tmp_path: Path
 ) -> None:
     arguments = [
         "calibrate",
@@ -129,12 +129,11 @@ def test_a_call_that_cannot_work_says_why(
         str(recordings[0]),
         "--fs",
         "25600",
-        "--tacho-pulses",
-        "1",
+        *rig_file(tmp_path, tacho_pulses=1, **wrong),
         "--out",
         "x.yaml",
     ]
-    result = CliRunner().invoke(app, [*arguments, *options])
+    result = CliRunner().invoke(app, arguments)
     assert result.exit_code != 0
     text = result.output + str(result.exception)
     assert said in text
@@ -145,7 +144,15 @@ def test_a_recording_that_is_fitted_is_not_held_out_even_under_another_name(
 ) -> None:
     again = shutil.copy(recordings[1], tmp_path / f"again{recordings[1].suffix}")
     fitted, out = map(str, recordings[:3]), tmp_path / "x.yaml"
-    options = ["--fs", "25600", "--tacho-pulses", "1", "--held-out", str(recordings[3]), "--held-out", str(again)]
+    options = [
+        "--fs",
+        "25600",
+        *rig_file(tmp_path, tacho_pulses=1),
+        "--held-out",
+        str(recordings[3]),
+        "--held-out",
+        str(again),
+    ]
     result = CliRunner().invoke(app, ["calibrate", str(calibrated[0]), *fitted, *options, "--out", str(out)])
     assert isinstance(result.exception, UsageError)
     assert f"has the same samples as {recordings[1].name}, which is fitted" in str(result.exception)
@@ -174,14 +181,13 @@ def test_noise_without_mesh_lines_and_a_wrong_unit_are_refused(
         str(calibrated[0]),
         "--fs",
         "25600",
-        "--tacho-pulses",
-        "1",
+        *rig_file(tmp_path, tacho_pulses=1),
         "--gearboxes",
         "2",
         "--out",
         str(tmp_path / "x.yaml"),
     ]
-    for name, said in (("noise.csv", "mesh lines above its floor"), ("loud.csv", "--unit")):
+    for name, said in (("noise.csv", "mesh lines above its floor"), ("loud.csv", "`unit` of the rig file")):
         result = CliRunner().invoke(app, ["calibrate", *common[:1], str(tmp_path / name), *common[1:]])
         assert isinstance(result.exception, UsageError)
         assert said in str(result.exception)

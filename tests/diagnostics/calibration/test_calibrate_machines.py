@@ -23,6 +23,7 @@ from tests.command import command
 from tests.config.mill import mill, with_machine
 from tests.config.minimal import by_name, minimal
 from tests.config.planets import planets
+from tests.rig_file import rig_file
 from tests.sensing.resonances import accelerance
 
 FS_HZ, GEARBOXES, LINES = 12_800.0, 3, 6
@@ -94,19 +95,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return found
 
 
-def calibrate(folder: Path, rig: str, out: str, *more: object) -> str:
+def calibrate(folder: Path, rig: str, out: str, *more: object, **reading: object) -> str:
     files = [folder / f"run{k}.npz" for k in range(3)]
     told = (
         "--fs",
         FS_HZ,
-        "--unit",
-        "m/s2",
-        "--tacho",
-        "tacho_s",
+        *rig_file(folder, unit="m/s2", tacho="tacho_s", **reading),
         "--gearboxes",
         GEARBOXES,
-        "--paths",
-        6,
         "--out",
         folder / out,
     )
@@ -217,29 +213,33 @@ def test_the_result_generates_a_set(folder: Path, said: str) -> None:
     [
         (
             {"machine": with_machine("gears", "eva", teeth=19)},
-            (),
+            {},
             r"wrong.yaml: recordings do not show mesh slow \(19/52 teeth\): ",
         ),
         (
             {"operating_points": [{"speed_hz": 50.0, "torque_nm": 20.0}]},
-            (),
+            {},
             r"run0.npz: the input shaft turns at 30 Hz; .*wrong.yaml has operating_points.speed_hz from 50 to 50",
         ),
-        ({}, ("--channel", "top=lid_vertical"), r"received top; the rig has the channels lid_vertical, end_horizontal"),
+        (
+            {},
+            {"channels": {"top": "lid_vertical"}},
+            r"received top; the rig has the channels lid_vertical, end_horizontal",
+        ),
         (
             {"sensors": {"turns": RIG["sensors"]["turns"]}},
-            (),
+            {},
             "sensors: received turns; allowed: at least one accelerometer",
         ),
     ],
     ids=["other teeth of the second mesh", "another speed", "another sensor", "no accelerometer"],
 )
 def test_a_machine_that_the_recordings_are_not_of_is_refused_by_name(
-    folder: Path, changes: dict[str, Any], more: tuple[str, ...], words: str
+    folder: Path, changes: dict[str, Any], more: dict[str, object], words: str
 ) -> None:
     (folder / "wrong.yaml").write_text(yaml.safe_dump(mill(**{**RIG, **changes}), sort_keys=False), encoding="utf-8")
     with pytest.raises(SiggenError, match=words):
-        calibrate(folder, "wrong.yaml", "none.yaml", *more)
+        calibrate(folder, "wrong.yaml", "none.yaml", **more)
     assert not (folder / "none.yaml").exists()
 
 

@@ -27,6 +27,7 @@ from diagnostics.prediction.saved_models import save_models
 from diagnostics.records.record_classes import FAULT
 from siggen.errors import UsageError
 from tests.command import command
+from tests.rig_file import rig_file
 
 SPLITS = ("train",) * 5 + ("validation",) * 2 + ("test",) * 3
 OPTIONS = NetworkOptions(cnn=False, classes=FAULT)
@@ -101,8 +102,7 @@ def test_predict_names_a_fault_and_says_so(
         "18,47",
         "--speed",
         "20,50",
-        "--unit",
-        "m/s2",
+        *rig_file(tmp_path, unit="m/s2"),
         "--out",
         str(tmp_path / "out"),
     )

@@ -19,8 +19,9 @@ from siggen.errors import UsageError
 from tests.diagnostics.explore.test_explorer import Read
 from tests.diagnostics.explore.unpacked import held, listed, rows
 from tests.diagnostics.machine.test_check import FS_HZ, write_recording
+from tests.rig_file import rig_file
 
-FACTS = ("--fs", str(FS_HZ), "--teeth", "20,31", "--speed", "20,30", "--unit", "m/s2")
+FACTS = ("--fs", str(FS_HZ), "--teeth", "20,31", "--speed", "20,30")
 
 
 def run(*arguments: object) -> str:
@@ -35,7 +36,7 @@ def test_recordings_are_laid_over_the_healthy_one_nearest_in_speed(tmp_path: Pat
     new = write_recording(tmp_path / "<img src=x onerror=alert(1)>.npz", seed=3, speed_hz=27.0, knock=0.8)
     page = tmp_path / "page.html"
     others = [write_recording(tmp_path / f"other_{k}.npz", seed=10 + k, speed_hz=25.0) for k in range(2)]
-    run("baseline", slow, fast, *others, *FACTS, "--out", tmp_path / "rig")
+    run("baseline", slow, fast, *others, *FACTS, *rig_file(tmp_path, unit="m/s2"), "--out", tmp_path / "rig")
     said = run("explore", tmp_path / "rig", slow, fast, new, "--out", page)
     assert said.count("mesh lines, halves within") == 3
     elements = held(page)
@@ -54,7 +55,7 @@ def test_recordings_are_laid_over_the_healthy_one_nearest_in_speed(tmp_path: Pat
 def test_a_machine_gives_its_references_and_verdicts_but_no_samples(tmp_path: Path) -> None:
     files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=k) for k in range(4)]
     new = write_recording(tmp_path / "august.npz", seed=9, knock=0.8)
-    run("baseline", *files, *FACTS, "--load", "40", "--out", tmp_path / "rig")
+    run("baseline", *files, *FACTS, *rig_file(tmp_path, unit="m/s2"), "--load", "40", "--out", tmp_path / "rig")
     past = PastCheck("2026-01-01", "august.npz", "changed", 25.0, 9.0, 3.0)
     line = json.dumps({name: getattr(past, name) for name in PastCheck.__slots__})
     (tmp_path / "rig" / "checks.jsonl").write_text(f"{line}\n")

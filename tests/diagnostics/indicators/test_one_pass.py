@@ -24,6 +24,7 @@ from siggen.dataset import reading
 from siggen.sets.verification import verify
 from tests.dataset.fake_set import fake_config, write_fake_set
 from tests.diagnostics.cli.test_bad_sets import samples, turning
+from tests.rig_file import rig_file
 
 OWN = "def peak_to_peak(signal, tacho, gears):\n    return float(signal.max() - signal.min())\n"
 
@@ -180,7 +181,16 @@ def test_an_own_indicator_goes_through_features_training_audit_report_and_predic
     assert "peak_to_peak (" in Path("report/models/model_card.md").read_text()
     capsys.readouterr()
     recording = str(min((folder / "data").glob("test*.parquet")))
-    predict = ("predict", "report/models", f"{recording}:0", "--fs", "12800", "--teeth", "18,47")
-    assert run(monkeypatch, *predict, "--tacho", "tacho_s") == 2
+    predict = (
+        "predict",
+        "report/models",
+        f"{recording}:0",
+        "--fs",
+        "12800",
+        "--teeth",
+        "18,47",
+        *rig_file(tmp_path, tacho="tacho_s"),
+    )
+    assert run(monkeypatch, *predict) == 2
     assert "your own indicators peak_to_peak, which are not part of a model; give" in capsys.readouterr().err
-    assert run(monkeypatch, *predict, "--tacho", "tacho_s", *own) == 0, capsys.readouterr().err
+    assert run(monkeypatch, *predict, *own) == 0, capsys.readouterr().err

@@ -13,10 +13,11 @@ from typer.testing import CliRunner
 from diagnostics.cli.app import app
 from diagnostics.machine.check import past_checks
 from siggen.errors import SiggenError, UsageError
+from tests.rig_file import rig_file
 
 FS_HZ, TEETH, SECONDS = 8000.0, 20, 2.0
 RIG = ("--fs", FS_HZ, "--teeth", "20,31")
-SEARCHED, TOLD = (*RIG, "--speed", "20,30"), (*RIG, "--tacho-pulses", 1)
+SEARCHED, TOLD = (*RIG, "--speed", "20,30"), (*RIG, "--rig", Path(__file__).with_name("pulses.yaml"))
 """Without a tacho the search for the speed takes nine tenths of a check: it is done where it is the subject."""
 
 
@@ -90,14 +91,14 @@ def test_the_machine_again_is_unchanged_and_a_knocking_tooth_is_a_change(machine
 def test_what_cannot_be_compared_is_said(
     machine: Path, tmp_path: Path, changed: dict[str, float], verdict: str, reason: str
 ) -> None:
-    code, said = run("check", machine, write_recording(tmp_path / "new.npz", seed=60, **changed), "--no-keep")
+    code, said = run("check", machine, write_recording(tmp_path / "new.npz", seed=60, **changed))
     assert code == 0
     assert f"new.npz: {verdict}" in said
     assert reason in said
 
 
 def test_another_load_is_not_compared(machine: Path, tmp_path: Path) -> None:
-    _, said = run("check", machine, write_recording(tmp_path / "new.npz", seed=61), "--load", "80", "--no-keep")
+    _, said = run("check", machine, write_recording(tmp_path / "new.npz", seed=61), "--load", "80")
     assert "other load or speed" in said
 
 
@@ -137,7 +138,7 @@ def test_teeth_whose_mesh_lines_are_not_there_are_refused(tmp_path: Path) -> Non
         held["pulse"] = np.where((held["t"] * 25.0) % 1.0 < 0.1, 5.0, 0.0)
         rng = np.random.default_rng(seed)
         np.savez(file, **{k: v if k in {"t", "pulse"} else rng.standard_normal(v.size) for k, v in held.items()})
-    facts = ["--fs", FS_HZ, "--teeth", "20,31", "--tacho-pulses", 1, "--channel", "lid=lid", "--out", tmp_path / "rig"]
+    facts = [*RIG, *rig_file(tmp_path, tacho_pulses=1, channels={"lid": "lid"}), "--out", tmp_path / "rig"]
     with pytest.raises(SiggenError, match="no mesh line of 20 teeth"):
         run("baseline", *files, *facts)
 
@@ -162,7 +163,7 @@ def test_a_load_between_the_references_is_judged_and_one_outside_is_not(way: str
 
     def verdicts(load: float, *new: Path) -> list[str]:
         given = ("--load", load) if way == "numbers" else ()
-        printed = run("check", tmp_path / "rig", *new, *given, "--no-keep")[1]
+        printed = run("check", tmp_path / "rig", *new, *given)[1]
         return [re.search(rf"^{file.name}: ([^:;,]+)", printed, re.MULTILINE)[1] for file in new]  # type: ignore[index]
 
     assert verdicts(47.0, *within) == ["unchanged", "changed"]
@@ -233,8 +234,8 @@ def test_a_renamed_column_is_mapped_and_another_load_that_nobody_gives_is_said(t
     run("baseline", *files, *TOLD, "--out", tmp_path / "rig")
     held = dict(np.load(write_recording(tmp_path / "louder.npz", seed=30, gain=1.5, tacho=True)))
     np.savez(tmp_path / "louder.npz", **{{"lid": "cover"}.get(name, name): values for name, values in held.items()})
-    with pytest.raises(SiggenError, match=r"no column lid.*--channel lid=COLUMN"):
+    with pytest.raises(SiggenError, match=r"no column lid.*channels: .lid: COLUMN"):
         run("check", tmp_path / "rig", tmp_path / "louder.npz")
-    code, said = run("check", tmp_path / "rig", tmp_path / "louder.npz", "--channel", "lid=cover")
+    code, said = run("check", tmp_path / "rig", tmp_path / "louder.npz", *rig_file(tmp_path, channels={"lid": "cover"}))
     assert (code, "louder.npz: changed" in said) == (4, True), said
     assert "all channels are louder than in every reference; other loads do that too: give --load to both" in said

@@ -21,6 +21,7 @@ from siggen.errors import SiggenError
 from tests.config.mill import mill
 from tests.config.planets import planets
 from tests.config.staged import staged
+from tests.rig_file import rig_file
 
 FS_HZ, SECONDS = 8000.0, 4.0
 CHANGED = 4
@@ -72,7 +73,7 @@ def test_a_knock_is_named_by_the_shaft_that_has_it(
     """The gear in front and the second pinion stand on one shaft: both have the knock once per turn."""
     (tmp_path / "gearbox.yaml").write_text(yaml.safe_dump(config(), sort_keys=False), encoding="utf-8")
     files = [recording(tmp_path / f"healthy_{k}.npz", made, seed=k) for k in range(8)]
-    facts = ("--fs", FS_HZ, "--tacho", "tacho_s", "--teeth", tmp_path / "gearbox.yaml")
+    facts = ("--fs", FS_HZ, *rig_file(tmp_path, tacho="tacho_s", teeth="gearbox.yaml"))
     code, said = run("baseline", *files, *facts, "--out", tmp_path / "rig")
     assert code == 0, said
     assert f"8 recordings, 1 channels, {shaft} at 24.9" in said
@@ -99,10 +100,10 @@ def test_a_machine_in_own_names_has_the_meshes_of_its_short_form(tmp_path: Path)
 def test_planets_need_a_tacho(tmp_path: Path) -> None:
     file = recording(tmp_path / "one.npz", of_planets, seed=1)
     (tmp_path / "gearbox.yaml").write_text(yaml.safe_dump(planets(), sort_keys=False), encoding="utf-8")
-    told = ("--fs", FS_HZ, "--unit", "m/s2", "--teeth", tmp_path / "gearbox.yaml", "--out", tmp_path / "out")
+    told = ("--fs", FS_HZ, "--teeth", tmp_path / "gearbox.yaml", "--out", tmp_path / "out")
     with pytest.raises(SiggenError, match="no tacho; the speed of planetary sets"):
-        run("indicators", file, *told, "--channel", "lid=lid", "--speed", "20,30")
-    code, said = run("indicators", file, *told, "--tacho", "tacho_s")
+        run("indicators", file, *told, *rig_file(tmp_path, unit="m/s2", channels={"lid": "lid"}), "--speed", "20,30")
+    code, said = run("indicators", file, *told, *rig_file(tmp_path, unit="m/s2", tacho="tacho_s"))
     assert code == 0, said
     assert "sun 25.0" in said
     assert (tmp_path / "out/indicators.csv").read_text(encoding="utf-8").count("fm4_planet") == 1

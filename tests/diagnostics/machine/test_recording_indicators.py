@@ -15,6 +15,7 @@ from diagnostics.machine.recording_indicators import recording_indicators
 from diagnostics.recordings.taken import RecordingFacts
 from diagnostics.records.gear_train import PAIR
 from siggen.errors import SiggenError
+from tests.rig_file import rig_file
 
 FS_HZ = 8000.0
 
@@ -46,8 +47,7 @@ def test_the_command_writes_the_same_numbers_as_a_table(recording: Path, tmp_pat
     facts = [
         "--fs",
         "8000",
-        "--unit",
-        "m/s2",
+        *rig_file(tmp_path, unit="m/s2"),
         "--teeth",
         "20,31",
         "--speed",
@@ -68,7 +68,7 @@ def test_the_command_writes_the_same_numbers_as_a_table(recording: Path, tmp_pat
 def test_slips_are_named(recording: Path, tmp_path: Path) -> None:
     for arguments, told in (
         ([str(recording)], "teeth unknown"),
-        ([str(recording), "--unit", "m/s2", "--teeth", "20,31"], "neither tacho nor speed"),
+        ([str(recording), *rig_file(tmp_path, unit="m/s2"), "--teeth", "20,31"], "neither tacho nor speed"),
         ([str(recording), "--teeth", "20,31", "--indicator", "mine:own"], "--indicator: for sets only"),
         ([str(tmp_path / "none.csv"), "--teeth", "20,31"], "no such file"),
         ([str(tmp_path), str(tmp_path)], "a second argument"),
@@ -82,40 +82,40 @@ def pulses(pulses_hz: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("columns", "arguments", "said"),
+    ("columns", "told", "said"),
     [
         (
             {"tacho_1": pulses(25.0), "tacho_2": pulses(50.0)},
-            ("--tacho-pulses", "1"),
-            r"tell the speed of the first shaft disagree \(tacho_1 25 Hz, tacho_2 50 Hz\).*--tacho tacho_1",
+            {"tacho_pulses": 1},
+            r"tell the speed of the first shaft disagree \(tacho_1 25 Hz, tacho_2 50 Hz\).*tacho: tacho_1",
         ),
         (
             {"key": pulses(25.0), "rpm [rpm]": np.full(16_000, 750.0)},
-            ("--tacho", "key", "--tacho-pulses", "1", "--speed", "10,15"),
+            {"tacho": "key", "tacho_pulses": 1, "speed": "10,15"},
             "the tacho gives 25 Hz of the first shaft, outside of 10 to 15 Hz",
         ),
         (
             {"tacho": pulses(25.0), "rpm [rpm]": np.full(16_000, 750.0)},
-            ("--tacho-pulses", "1"),
+            {"tacho_pulses": 1},
             r"disagree \(tacho 25 Hz, speed 12.5 Hz\)",
         ),
-        ({"side": np.full(16_000, 0.3)}, ("--speed", "20,30"), "channel side: constant over all 16000 samples"),
+        ({"side": np.full(16_000, 0.3)}, {"speed": "20,30"}, "channel side: constant over all 16000 samples"),
         (
             {"side": np.where(np.arange(16_000) % 3 == 0, 1e-12, 0.0) + 1.0},
-            ("--speed", "20,30"),
+            {"speed": "20,30"},
             "channel side: .*(stand at|no vibration)",
         ),
-        ({"lid": None}, ("--speed", "20,30"), r"0.5 s hold 15 turns of the first shaft at 30 Hz; allowed are 20"),
+        ({"lid": None}, {"speed": "20,30"}, r"0.5 s hold 15 turns of the first shaft at 30 Hz; allowed are 20"),
     ],
     ids=["two tachos", "tacho and range", "tacho and speed", "constant", "rounding alone", "15 turns"],
 )
 def test_recordings_that_contradict_themselves_or_say_nothing_are_refused(
-    columns: dict[str, np.ndarray | None], arguments: tuple[str, ...], said: str, recording: Path, tmp_path: Path
+    columns: dict[str, np.ndarray | None], told: dict[str, object], said: str, recording: Path, tmp_path: Path
 ) -> None:
     held = dict(zip(("t", "lid"), np.loadtxt(recording, delimiter=",", skiprows=1).T, strict=True))
     held |= {name: values for name, values in columns.items() if values is not None}
     size = 4000 if any(values is None for values in columns.values()) else 16_000
     np.savez(tmp_path / "run.npz", **{name: values[:size] for name, values in held.items()})
-    line = ["indicators", str(tmp_path / "run.npz"), "--unit", "m/s2", "--teeth", "20,31", *arguments]
+    line = ["indicators", str(tmp_path / "run.npz"), *rig_file(tmp_path, unit="m/s2", teeth=[20, 31], **told)]
     with pytest.raises(SiggenError, match=said):
         CliRunner().invoke(app, line, catch_exceptions=False)

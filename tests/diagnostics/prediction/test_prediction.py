@@ -24,6 +24,7 @@ from diagnostics.recordings.taken import RecordingFacts
 from diagnostics.statistics.calibration import tempered
 from siggen.dataset.seal import sealed
 from siggen.errors import UsageError
+from tests.rig_file import rig_file
 
 FS_HZ = 12_800.0
 
@@ -48,8 +49,8 @@ def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     return int(stop.value.code or 0)
 
 
-def options(*more: str) -> tuple[str, ...]:
-    return ("--fs", "12800", "--teeth", "18,47", "--speed", "20,50", "--unit", "m/s2", *more)
+def options(folder: Path, *more: str) -> tuple[str, ...]:
+    return ("--fs", "12800", "--teeth", "18,47", "--speed", "20,50", *rig_file(folder, unit="m/s2"), *more)
 
 
 def test_a_record_of_the_family_gets_an_answer_with_plot_and_page(
@@ -57,7 +58,7 @@ def test_a_record_of_the_family_gets_an_answer_with_plot_and_page(
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     file = save_as_siggen_does(tmp_path / "run.parquet", make_dataset(("test",) * 2, seed=8), 2)  # severe
-    assert run(monkeypatch, str(models_folder), str(file), *options("--out", str(tmp_path / "out"))) == 0
+    assert run(monkeypatch, str(models_folder), str(file), *options(tmp_path, "--out", str(tmp_path / "out"))) == 0
     assert "answer:               severe" in capsys.readouterr().out
     found = json.loads((tmp_path / "out" / "prediction.json").read_text())
     assert found["state"] == "severe"
@@ -75,7 +76,7 @@ def test_no_state_of_a_measured_recording_is_named_without_a_healthy_one(
 ) -> None:  # fmt: skip
     """The same samples as above, from a file that siggen did not write."""
     file = save(tmp_path / "run.npz", make_dataset(("test",) * 2, seed=8), 2)
-    assert run(monkeypatch, str(models_folder), str(file), *options("--out", str(tmp_path / "out"))) == 0
+    assert run(monkeypatch, str(models_folder), str(file), *options(tmp_path, "--out", str(tmp_path / "out"))) == 0
     said = capsys.readouterr().out
     assert "answer:               abstains" in said
     assert "named only beside healthy recordings" in said
@@ -93,7 +94,7 @@ def test_a_foreign_level_and_foreign_teeth_get_no_answer(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     file = save(tmp_path / "run.npz", dataset, 0, gain=300.0)
-    given = ("--fs", "12800", "--unit", "m/s2", "--tacho", "tacho_s")
+    given = ("--fs", "12800", *rig_file(tmp_path, unit="m/s2", tacho="tacho_s"))
     assert run(monkeypatch, str(models_folder), str(file), *given, "--teeth", "18,47") == 0
     found = capsys.readouterr().out
     assert "answer:               abstains" in found
@@ -104,21 +105,22 @@ def test_a_foreign_level_and_foreign_teeth_get_no_answer(
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
+    ("told", "arguments", "message"),
     [
-        (("--fs", "12800", "--speed", "20,50", "--unit", "m/s2"), "teeth unknown"),
-        (("--teeth", "18,47", "--speed", "20,50", "--unit", "m/s2"), "sampling rate"),
-        (options("--channel", "casing=x"), "no channel casing is wanted"),
-        (options("--reference", "run.npz"), "without the healthy-referenced variant"),
+        ({"fs_hz": 12_800}, (), "teeth unknown"),
+        ({"teeth": "18,47"}, (), "sampling rate"),
+        ({"fs_hz": 12_800, "teeth": [18, 47], "channels": {"casing": "x"}}, (), "no channel casing is wanted"),
+        ({"fs_hz": 12_800, "teeth": [18, 47]}, ("--reference", "run.npz"), "without the healthy-referenced variant"),
     ],
 )
 def test_what_is_missing_is_a_usage_error_with_a_way_out(
-    arguments: tuple[str, ...], message: str, models_folder: Path, dataset: Any, tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
+    told: dict[str, object], arguments: tuple[str, ...], message: str, models_folder: Path, dataset: Any,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     save(tmp_path / "run.npz", dataset, 0)
     monkeypatch.chdir(tmp_path)
-    assert run(monkeypatch, str(models_folder), "run.npz", *arguments) == 2
+    reading = rig_file(tmp_path, speed="20,50", unit="m/s2", **told)
+    assert run(monkeypatch, str(models_folder), "run.npz", *reading, *arguments) == 2
     assert message in capsys.readouterr().err
 
 
@@ -155,7 +157,7 @@ def test_a_recording_that_cannot_be_used_is_named_with_the_way_out(
         np.savez(name, **(signals | change))
     elif name != ".":
         Path(name).write_bytes(b"no recording") if name != "gone.npz" else None
-    assert run(monkeypatch, str(models_folder), name, *options()) == 2
+    assert run(monkeypatch, str(models_folder), name, *options(tmp_path)) == 2
     assert message in " ".join(capsys.readouterr().err.split())
 
 
@@ -163,7 +165,7 @@ def test_a_model_that_is_not_there_is_called_missing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert run(monkeypatch, "gone", "run.npz", *options()) == 2
+    assert run(monkeypatch, "gone", "run.npz", *options(tmp_path)) == 2
     assert "gone: no such folder; MODEL is the folder that" in " ".join(capsys.readouterr().err.split())
 
 

@@ -36,6 +36,7 @@ from diagnostics.training import cnn
 from diagnostics.training.average_rows import averaged_records
 from diagnostics.training.referenced import healthy_references
 from tests.diagnostics.conftest import SPLITS_24
+from tests.rig_file import rig_file
 
 FS_HZ = 12_800
 
@@ -133,10 +134,7 @@ def predict(
         str(FS_HZ),
         "--teeth",
         "18,47",
-        "--unit",
-        "m/s2",
-        "--tacho",
-        "tacho_s",
+        *rig_file(out if out.is_dir() else out.parent, unit="m/s2", tacho="tacho_s"),
         "--out",
         str(out),
         *more,
@@ -230,8 +228,8 @@ def test_references_at_another_rate_are_brought_to_that_of_the_model(
     trained: tuple[Path, Path], other: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder, file = trained
-    np.savez(tmp_path / "fast.npz", **channels(other, 0, (2, 1)), tacho_s=pulses(other, 0))
-    reference = ("--reference", str(tmp_path / "fast.npz"), "--reference-fs", str(2 * FS_HZ))
+    np.savez(tmp_path / "fast.npz", **channels(other, 0, (2, 1)), tacho_s=pulses(other, 0), fs=2 * FS_HZ)
+    reference = ("--reference", str(tmp_path / "fast.npz"))
     code, found = predict(monkeypatch, folder, f"{file}:2", tmp_path, *reference)
     assert code == 0
     assert found["state"] == "severe"
@@ -246,8 +244,8 @@ def test_a_reference_sampled_too_slowly_or_at_another_speed_forbids_an_answer(
     trained: tuple[Path, Path], other: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder, file = trained
-    np.savez(tmp_path / "slow.npz", **channels(other, 0, (3, 4)), tacho_s=pulses(other, 0))
-    reference = ("--reference", str(tmp_path / "slow.npz"), "--reference-fs", str(FS_HZ * 3 // 4))
+    np.savez(tmp_path / "slow.npz", **channels(other, 0, (3, 4)), tacho_s=pulses(other, 0), fs=FS_HZ * 3 // 4)
+    reference = ("--reference", str(tmp_path / "slow.npz"))
     found = predict(monkeypatch, folder, f"{file}:2", tmp_path, *reference)[1]
     assert found["state"] == "abstains"
     assert any(

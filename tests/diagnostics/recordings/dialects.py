@@ -100,7 +100,7 @@ def texts() -> list[Dialect]:
     quoted = [f'"{a}","{b}"' for a, b in cells]
     return [
         text("plain.csv", _lines([unit])),
-        text("no_unit.csv", _lines([names]), refused=r"no unit of left is stated.*--unit g"),
+        text("no_unit.csv", _lines([names]), refused=r"no unit of left is stated.*unit: g"),
         text("no_unit_said.csv", _lines([names]), G, unit="g"),
         text("g.csv", _lines(["time,left [g],right [g]"]), G),
         text("mg.csv", _lines(["time_s,left_mg,right_mg"]), 1e-3 * G),
@@ -142,7 +142,7 @@ def texts() -> list[Dialect]:
         text("unix_us.csv", _lines(["timestamp,left [g],right [g]"], times=1e6 * (unix + TIME_S), time="{:.2f}"), G),
         text("rounded.csv", _lines(["time,left [g],right [g]"], time="{:.5f}"), G),
         text("coarse.csv", _lines(["time,left [g],right [g]"], time="{:.3f}"), refused="repeats its coarse times"),
-        text("jitter.csv", _lines(["time,left [g],right [g]"], times=TIME_S + JITTER), refused="uneven.*--resample 6"),
+        text("jitter.csv", _lines(["time,left [g],right [g]"], times=TIME_S + JITTER), refused="uneven.*resample_hz"),
         text("gap.csv", ["time,left [g],right [g]", *lost], refused="has a gap.*longest whole piece"),
         text("back.csv", _lines(["time,left [g],right [g]"], times=back), refused="steps back"),
         text("rpm.csv", _lines(["time,left [g],right [g],rpm"], more=[f"{1440 + k % 7}" for k in range(SAMPLES)]), G),
@@ -175,14 +175,14 @@ def arrays() -> list[Dialect]:
         Dialect("shifted.tdms", _tdms, G, says="begins 0.015625 s later"),
         Dialect("ascii.uff", _uff(0), G),
         Dialect("binary.unv", _uff(1), G),
-        Dialect("integer.wav", _wav, refused="--full-scale", facts={"unit": "g"}),
+        Dialect("integer.wav", _wav, refused="full_scale: 50", facts={"unit": "g"}),
         Dialect("integer_said.wav", _wav, G, facts={"unit": "g", "full_scale": 8.0}),
         Dialect("audio.parquet", _audio, G, facts={"unit": "g"}, channels=1),
         Dialect("columns.parquet", _columns, G),
         Dialect("named.npz", lambda path: np.savez(path, left_mg=LEFT, right_mg=RIGHT, fs=FS_HZ), 1e-3 * G),
         Dialect("rows.npy", lambda path: np.save(path, np.stack([TIME_S, LEFT, RIGHT], 1)), G, facts={"unit": "g"}),
         Dialect("many.npz", lambda path: np.savez(path, fs=FS_HZ, **{f"c{k}": LEFT for k in range(40)}),
-                facts={"unit": "g"}, refused="40 columns that could be vibration.*--channel"),
+                facts={"unit": "g"}, refused="40 columns that could be vibration.*channels"),
         Dialect("recorder.mf4", _mdf, G),
     ]  # fmt: skip
 

@@ -58,7 +58,7 @@ def test_a_counter_of_samples_is_no_channel_and_states_no_rate(tmp_path: Path) -
 
 def test_a_rate_that_contradicts_the_times_is_refused_and_so_is_a_time_as_a_channel(tmp_path: Path) -> None:
     file = write(tmp_path, [f"{at:.6f}" for at in TIMES_S])
-    with pytest.raises(UsageError, match=r"states 25600 Hz, received --fs 51200"):
+    with pytest.raises(UsageError, match=r"states 25600 Hz, received 51200 Hz by --fs"):
         read_recording(file, ("lid",), RecordingFacts(fs_hz=51_200.0))
     assert read_recording(file, ("lid",), RecordingFacts(fs_hz=25_600.0, unit="g")).fs_hz == FS_HZ
     with pytest.raises(UsageError, match=r"column time is a time \(name\), not channel lid"):

@@ -55,7 +55,7 @@ def test_integer_wav_needs_its_full_scale(tmp_path: Path) -> None:
     samples = np.array([[-16384, 8192], [16384, 0], [0, -8192]] * 50, dtype=np.int16)
     wavfile.write(tmp_path / "run.wav", FS_HZ, samples)
     columns = {"vertical": "1", "horizontal": "2"}
-    with pytest.raises(UsageError, match=r"run.wav: holds shares of full scale.*--full-scale 50"):
+    with pytest.raises(UsageError, match=r"run.wav: holds shares of full scale.*full_scale: 50"):
         read_recording(tmp_path / "run.wav", NAMES, RecordingFacts(unit="m/s2", columns=columns))
     found = read_recording(tmp_path / "run.wav", NAMES, RecordingFacts(unit="m/s2", columns=columns, full_scale=50.0))
     np.testing.assert_array_equal(found.channels["vertical"][:3], [-25.0, 25.0, 0.0])
@@ -134,7 +134,7 @@ def test_pulses_of_a_sampled_tacho_lie_between_samples(tmp_path: Path) -> None:
         (lambda x: np.where(np.arange(x.size) == 7, np.nan, x), "1 of 4000 samples are not finite"),
         (np.zeros_like, "constant over all 4000 samples"),
         (lambda x: np.clip(x, -4.0, 4.0), "stand clipped"),
-        (lambda x: (np.arange(x.size) % 80 < 8) * 5.0, r"100.00% of the samples stand at 0 or 5.*--tacho vertical"),
+        (lambda x: (np.arange(x.size) % 80 < 8) * 5.0, r"100.00% of the samples stand at 0 or 5.*tacho: vertical"),
         (lambda x: x[:-5], "differ in their number of samples"),
     ],
 )
@@ -156,7 +156,7 @@ def test_rate_channels_and_pickled_arrays_are_refused(tmp_path: Path) -> None:
     file = write(tmp_path, "mat")
     with pytest.raises(UsageError, match=r"run.mat: sampling rate: received None.*--fs"):
         read_recording(file, NAMES, RecordingFacts(unit="m/s2"))
-    with pytest.raises(UsageError, match=r"no column axial.*--channel axial=COLUMN"):
+    with pytest.raises(UsageError, match=r"no column axial.*channels: .*axial: COLUMN"):
         read_recording(file, ("axial",), RecordingFacts(fs_hz=FS_HZ, unit="m/s2"))
     np.save(tmp_path / "objects.npy", np.array([{"a": 1}], dtype=object), allow_pickle=True)
     (tmp_path / "pickled.npy").write_bytes(pickle.dumps([1.0, 2.0]))

@@ -102,9 +102,9 @@ def test_values_rate_and_unit_come_back_from_the_file_alone(kind: str, sound: Ca
         np.testing.assert_array_equal(read_columns(path).values[name], expected)
         np.testing.assert_array_equal(found.channels[name], STANDARD_GRAVITY_M_S2 * expected)
     assert found.fs_hz == FS_HZ  # type 58 keeps six digits of 1/51200 s
-    with pytest.raises(UsageError, match=r"states the unit g of vertical, received --unit m/s2"):
+    with pytest.raises(UsageError, match=r"states the unit g of vertical, the rig file m/s2"):
         read_recording(path, NAMES, RecordingFacts(unit="m/s2"))
-    with pytest.raises(UsageError, match="states 51200 Hz, received --fs 48000"):
+    with pytest.raises(UsageError, match="states 51200 Hz, received 48000 Hz by --fs"):
         read_recording(path, NAMES, RecordingFacts(fs_hz=48_000.0))
 
 
@@ -146,7 +146,7 @@ def test_mutated_files_give_a_recording_or_a_sentence(kind: str, sound: Callable
 def test_a_unit_that_is_not_known_is_asked_for(tmp_path: Path) -> None:
     path = tmp_path / "run.uff"
     universal(path, unit="EU")
-    with pytest.raises(UsageError, match=r"run.uff: states the unit 'EU' of vertical; .* --unit g"):
+    with pytest.raises(UsageError, match=r"run.uff: states the unit 'EU' of vertical; .*unit: g"):
         read_recording(path, NAMES, RecordingFacts())
     found = read_recording(path, NAMES, RecordingFacts(unit="mm/s2"))
     np.testing.assert_allclose(found.channels["vertical"], 1e-3 * signals()[0])
