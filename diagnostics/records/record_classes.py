@@ -125,7 +125,7 @@ def refuse_lives(dataset: Dataset) -> None:
     if dataset.config.get("life"):
         raise UsageError(
             f"{dataset.path}: received a set of lives, which has no classes: an inspection is healthy in one gearbox "
-            "and pitted in another. Allowed: a set with states (siggen inspect life --as-states writes those of one "
+            "and pitted in another. Allowed: a set with states (siggen inspect life --out writes those of one "
             "gearbox). Ages, phases and remaining lives of this one are in its folder life/; siggen-diagnostics "
             "report judges what tells them"
         )

@@ -48,7 +48,7 @@ def tried(wheel: Path, place: Path) -> None:
         [siggen, "plan", "quickstart"],
         [siggen, "generate", "quickstart", "--out", "set", "--workers", "1", *SMALL],
         [siggen, "verify", "set", "--sample", "1"],
-        [siggen, "inspect", "run", "set"],
+        [siggen, "show", "set", "--record", "0"],
     ):
         run(command, place)
 

@@ -4,43 +4,24 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
 from typing import Annotated
 
 import typer
 
 from siggen.cli.echo import echo
-from siggen.cli.errors import errors
-from siggen.cli.flank import flank
 from siggen.cli.generate import generate
 from siggen.cli.init import init
-from siggen.cli.life import life
-from siggen.cli.modes import modes
-from siggen.cli.path import path
+from siggen.cli.inspect import inspect
 from siggen.cli.plan import plan
-from siggen.cli.pressure import pressure
 from siggen.cli.publish import publish
 from siggen.cli.show import show
-from siggen.cli.spectrum import spectrum
-from siggen.cli.tvms import tvms
 from siggen.cli.verify import verify
 from siggen.errors import EXIT_INTERRUPTED, EXIT_UNEXPECTED, EXIT_USAGE, SiggenError, path_fault
 
 TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 # Command files import nothing slow at their top, so that all of them together start at once.
-COMMANDS = (init, plan, generate, verify, show, publish)
-INSPECTED: dict[str, Callable[..., None]] = {
-    "tvms": tvms,
-    "flank": flank,
-    "pressure": pressure,
-    "errors": errors,
-    "modes": modes,
-    "path": path,
-    "spectrum": spectrum,
-    "life": life,
-}
-"""What `siggen inspect` shows of one gearbox or of its life."""
+COMMANDS = (init, plan, generate, verify, show, inspect, publish)
 
 app = typer.Typer(
     help="Labelled synthetic vibration records of spur gearboxes with tooth pitting and spalling.",
@@ -52,16 +33,6 @@ app = typer.Typer(
 )
 for command in COMMANDS:
     app.command()(command)
-
-inspect = typer.Typer(
-    help="Look at one gearbox: stiffness, flanks, pressure, errors, modes, path, spectrum, life.",
-    no_args_is_help=True,
-    rich_markup_mode="rich",
-    epilog="Begin with: siggen inspect tvms quickstart --open",
-)
-for name, shown in INSPECTED.items():
-    inspect.command(name)(shown)
-app.add_typer(inspect, name="inspect")
 
 
 def _print_version(wanted: bool) -> None:

@@ -3,51 +3,31 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 from siggen.cli.echo import echo
-from siggen.cli.json_output import AsJson, echo_json
+from siggen.cli.inspection import Inspection
+from siggen.cli.json_output import echo_json
 from siggen.cli.working import working
 
 if TYPE_CHECKING:
     from siggen.gearbox.design import SetDesign
 
 
-def life(
-    config: Annotated[Path, typer.Argument(help="YAML file with a section life, or a preset such as fleet.")],
-    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
-    overrides: Annotated[
-        list[str] | None,
-        typer.Option("--set", help="Replace a value, such as life.interval_h=2.5.", metavar="PATH=VALUE"),
-    ] = None,
-    as_states: Annotated[
-        Path | None,
-        typer.Option(
-            "--as-states",
-            metavar="FILE",
-            help="Write the same configuration with this gearbox's inspections as listed states in place of life; "
-            "never a file that exists.",
-        ),
-    ] = None,
-    as_json: AsJson = False,
-) -> None:
+def life(asked: Inspection) -> None:
     """Print what a gearbox shows at each inspection: age, phase, pitted teeth, area, remaining life.
 
-    With --as-states the records of this gearbox have the same bytes in a set of that file as in the set of lives.
-
-    Example: siggen inspect life fleet --specimen 3 --as-states runs/gearbox_3.yaml
+    The file of --out is the same configuration with these inspections as states in place of life; records of this
+    gearbox have the same bytes in a set of it as in the set of lives. It is never one that exists.
     """
-    from siggen.checks.loading import load_config
-
+    asked.png(prints=True, endings=(".yaml", ".yml"))
     with working("running a gearbox to its end"):
-        loaded = load_config(config, overrides or ())
-        found = _content(loaded, specimen)
-    if as_states is not None:
-        _write(as_states, loaded, specimen)
-        echo(f"wrote {as_states}: inspections of gearbox {specimen} as states", err=True)
-    if as_json:
+        loaded = asked.design()
+        found = _content(loaded, asked.gearbox)
+    if asked.out is not None:
+        _write(asked.out, loaded, asked.gearbox)
+        echo(f"wrote {asked.out}: inspections of gearbox {asked.gearbox} as states", err=True)
+    if asked.as_json:
         echo_json(found)
         return
     _print(found)
@@ -67,7 +47,7 @@ def _content(design: SetDesign, specimen: int) -> dict[str, Any]:
     if not design.lives:
         raise UsageError(f"{design.name} has no section life; allowed: a configuration with one, such as fleet")
     if specimen >= design.specimens:
-        raise UsageError(f"--specimen {specimen}: allowed: 0 to {design.specimens - 1}")
+        raise UsageError(f"--gearbox {specimen}: allowed: 0 to {design.specimens - 1}")
     rows = life_rows(design, specimen)
     inspections = [
         {**row, "teeth": [one for one in rows["teeth"] if one["inspection"] == row["inspection"]]}
@@ -81,7 +61,7 @@ def _write(file: Path, design: SetDesign, specimen: int) -> None:
     from siggen.file_writing import write_file
 
     if file.exists():
-        raise UsageError(f"--as-states {file}: is there already; give a new file")
+        raise UsageError(f"--out {file}: is there already; give a new file")
     write_file(file, design.listed(specimen).text)
 
 

@@ -1,16 +1,11 @@
-"""`siggen inspect modes`: natural frequencies of one specimen and what they consist of, as a table and a picture."""
+"""`siggen inspect modes`: natural frequencies of one gearbox and what they consist of, as a table and a picture."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import typer
-
-from siggen.cli.echo import echo
-from siggen.cli.json_output import AsJson, echo_json
-from siggen.cli.option_groups import grouped
-from siggen.cli.picture_option import PictureOptions
+from siggen.cli.inspection import Inspection
 from siggen.cli.working import working
 
 if TYPE_CHECKING:
@@ -19,49 +14,29 @@ if TYPE_CHECKING:
     from siggen.views.modes import SpecimenModes
 
 
-@grouped
-def modes(
-    config: Annotated[
-        Path, typer.Argument(metavar="CONFIG", help="YAML file of a set, or a preset such as quickstart.")
-    ],
-    *,
-    out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
-    picture: PictureOptions,
-    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
-    overrides: Annotated[
-        list[str] | None, typer.Option("--set", help="Replace a value, such as dynamics.model=casing.")
-    ] = None,
-    as_json: AsJson = False,
-) -> None:
-    """Print the undamped natural modes at the mean mesh stiffness; the one at 0 Hz is free rotation.
-
-    Example: siggen inspect modes configs/paper_b.yaml --out modes.csv --png modes.png
-    """
-    from siggen.checks.loading import load_config
-    from siggen.dataset.table_file import check_table_file, write_table_file
-
-    if out is not None:
-        check_table_file(out)
+def modes(asked: Inspection) -> None:
+    """Print the undamped natural modes at the mean mesh stiffness; the one at 0 Hz is free rotation."""
+    png = asked.png(prints=True)
     from siggen.views.modes import specimen_modes
 
-    png = picture.place("modes")
     with working("computing natural modes"):
-        found = specimen_modes(load_config(config, overrides or ()).gearbox(specimen))
-    if as_json:
-        echo_json({"mesh_stiffness_n_per_m": found.mesh_stiffness_n_per_m, "modes": found.table.to_pylist()})
-    else:
+        found = specimen_modes(asked.design().gearbox(asked.gearbox))
+    if not asked.as_json:
         from rich.console import Console
 
         Console().print(_printed(found))
-    if out is not None:
-        write_table_file(found.table, out)
-        echo(str(out), err=as_json)
-    if png is not None:
-        with working("drawing the picture", compiles=False):
-            from siggen.views.modes import save_modes_figure
 
-            save_modes_figure(found, png)
-        picture.drawn(png, err=as_json)
+    def draw(file: Path) -> None:
+        from siggen.views.modes import save_modes_figure
+
+        save_modes_figure(found, file)
+
+    asked.hand_over(
+        found.table,
+        draw,
+        png,
+        lambda: {"mesh_stiffness_n_per_m": found.mesh_stiffness_n_per_m, "modes": found.table.to_pylist()},
+    )
 
 
 def _printed(found: SpecimenModes) -> Table:

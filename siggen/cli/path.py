@@ -1,16 +1,13 @@
-"""`siggen inspect path`: what lies between the bearings and each channel of one gearbox, as a table and a picture."""
+"""`siggen inspect path` and `housing`: what lies between the bearings and each channel of one gearbox."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from siggen.cli.echo import echo
-from siggen.cli.json_output import AsJson, echo_json
-from siggen.cli.option_groups import grouped
-from siggen.cli.picture_option import PictureOptions
+from siggen.cli.inspection import Inspection
+from siggen.cli.json_output import echo_json
 from siggen.cli.working import working
 
 if TYPE_CHECKING:
@@ -24,69 +21,50 @@ SHOWN = 12
 """Modes that are printed; --json has all."""
 
 
-@grouped
-def path(
-    config: Annotated[
-        Path, typer.Argument(metavar="CONFIG", help="YAML file of a set, or a preset such as quickstart.")
-    ],
-    *,
-    out: Annotated[Path | None, typer.Option("--out", help="Table to write: .csv or .parquet.")] = None,
-    picture: PictureOptions,
-    specimen: Annotated[int, typer.Option("--specimen", min=0, help="Number of the gearbox in the set, from 0.")] = 0,
-    overrides: Annotated[
-        list[str] | None, typer.Option("--set", help="Replace a value, such as housing.wall_mm=12.")
-    ] = None,
-    modes: Annotated[
-        Path | None, typer.Option("--modes", help="CSV of the housing's modes, for housing.kind: modal.")
-    ] = None,
-    as_json: AsJson = False,
-) -> None:
+def path(asked: Inspection) -> None:
     """Print the transfer paths from bearing forces to channels: modes, damping and level.
 
-    The table of --out has one row per frequency and two columns per channel and bearing force, in the form that a
-    sensor's measured path reads.
-
-    Example: siggen inspect path quickstart --png path.png
+    The table has one row per frequency and two columns per channel and bearing force, in the form that a sensor's
+    measured path reads.
     """
-    from siggen.checks.loading import load_config
-    from siggen.dataset.table_file import check_table_file, write_table_file
-
-    if out is not None:
-        check_table_file(out)
-    from siggen.views.path import path_curves
-
-    png = picture.place("path")
-    with working("computing transfer paths"):
-        loaded = load_config(config, overrides or ())
-        found = path_curves(loaded.gearbox(specimen), loaded.config.mesh_harmonics)
-    if as_json:
-        echo_json(_facts(found))
-    else:
+    png = asked.png(prints=True)
+    found = _found(asked)
+    if not asked.as_json:
         from rich.console import Console
 
         Console().print(_printed(found))
-    if out is not None:
-        write_table_file(found.table, out)
-        echo(str(out), err=as_json)
-    if modes is not None:
-        _write_modes(found, modes)
-        echo(str(modes), err=as_json)
-    if png is not None:
-        with working("drawing the picture", compiles=False):
-            from siggen.views.path import save_path_figure
 
-            save_path_figure(found, png)
-        picture.drawn(png, err=as_json)
+    def draw(file: Path) -> None:
+        from siggen.views.path import save_path_figure
+
+        save_path_figure(found, file)
+
+    asked.hand_over(found.table, draw, png, lambda: _facts(found))
 
 
-def _write_modes(found: PathCurves, path: Path) -> None:
+def housing(asked: Inspection) -> None:
+    """Write the modes of a housing of plates, in the form that housing.kind: modal reads."""
     from siggen.errors import UsageError
     from siggen.file_writing import write_file
     from siggen.views.exported_model import exported_modes
 
+    asked.png(endings=(".csv",))
+    found = _found(asked)
     if found.housing is None:
         raise UsageError("no sensor stands on a housing that gives way: allowed is housing.kind: plates")
-    write_file(path, exported_modes(found.housing).text)
+    if asked.as_json:
+        echo_json({"housing_modes": _facts(found)["housing_modes"]})
+    if asked.out is not None:
+        write_file(asked.out, exported_modes(found.housing).text)
+        echo(str(asked.out), err=asked.as_json)
+
+
+def _found(asked: Inspection) -> PathCurves:
+    from siggen.views.path import path_curves
+
+    with working("computing transfer paths"):
+        loaded = asked.design()
+        return path_curves(loaded.gearbox(asked.gearbox), loaded.config.mesh_harmonics)
 
 
 def _facts(found: PathCurves) -> dict[str, object]:

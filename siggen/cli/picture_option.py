@@ -41,23 +41,3 @@ class PictureOptions:
         echo(str(png), err=err)
         if self.show and not webbrowser.open(png.resolve().as_uri()):
             echo(f"note: no program was found to show it; open {png} yourself", err=True)
-
-
-def check_wanted(out: Path | None, png: Path | None, command: str) -> None:
-    """Check that a command has something to do.
-
-    Raises
-    ------
-    UsageError
-        If neither a table nor a picture is wanted, or no table can go there.
-    """
-    from siggen.dataset.table_file import check_table_file
-    from siggen.errors import UsageError
-
-    if out is not None:
-        check_table_file(out)
-    elif png is None:
-        raise UsageError(
-            f"siggen inspect {command}: nothing to write; give --out {command}.csv for the table, --png {command}.png "
-            "for the picture, or --open to see it"
-        )

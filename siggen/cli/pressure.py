@@ -2,46 +2,24 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from siggen.cli.echo import echo
-from siggen.cli.option_groups import grouped
-from siggen.cli.picture_option import PictureOptions, check_wanted
+from siggen.cli.inspection import Inspection
 from siggen.cli.working import working
+from siggen.errors import UsageError
+
+if TYPE_CHECKING:
+    from siggen.gearbox.design import SetDesign
+    from siggen.gearbox.plan import PlannedRecord
 
 
-@grouped
-def pressure(
-    source: Annotated[Path, typer.Argument(metavar="CONFIG|DIR", help="YAML file of a set, or the folder of a set.")],
-    record: Annotated[int, typer.Option("--record", min=0, help="Index of the record (column record_id).")],
-    *,
-    out: Annotated[
-        Path | None, typer.Option("--out", help="Table to write: .csv or .parquet, a row per position and slice.")
-    ] = None,
-    picture: PictureOptions,
-    gear: Annotated[
-        str | None,
-        typer.Option("--gear", help="Whose flank: pinion, gear, or a gear's own name; by default the damaged one's."),
-    ] = None,
-    tooth: Annotated[
-        int | None, typer.Option("--tooth", min=0, help="Index of the tooth; by default the first damaged one.")
-    ] = None,
-    overrides: Annotated[
-        list[str] | None, typer.Option("--set", help="Replace a value, such as duration_s=0.5.")
-    ] = None,
-) -> None:
-    """Simulate one record and write how the force of a tooth spreads over its flank: load per length and pressure.
+def pressure(asked: Inspection) -> None:
+    """Simulate a record and write how the force of a tooth spreads over its flank: load per length and pressure.
 
     Force and tilt are those of the motion. How they spread is solved across the face, with damage, crowning, helix and
     misalignment, and with the elastic pressure at the edges of damage as round as they were drawn.
-
-    Example: siggen inspect pressure configs/quickstart.yaml --record 2 --out pressure.parquet --png pressure.png
     """
-    from siggen.cli.record_choice import chosen_record
-    from siggen.dataset.table_file import write_table_file
     from siggen.views.pressure import (
         chosen_positions,
         face_pressure,
@@ -50,19 +28,41 @@ def pressure(
         save_pressure_figure,
     )
 
-    png = picture.place("pressure")
-    check_wanted(out, png, "pressure")
+    png = asked.png()
+    gear, tooth = _tooth(asked.tooth)
     with working("simulating the record and solving the pressure across the face"):
-        _, drawn, planned = chosen_record(source, record, overrides or ())
-        found = face_pressure(drawn, planned, gear, tooth)
-    positions = chosen_positions(found)
-    if out is not None:
-        write_table_file(pressure_table(found), out)
-    if png is not None:
-        with working("drawing the picture", compiles=False):
-            save_pressure_figure(found, positions, png)
-    echo(f"{found.view.state}, {found.view.gear} tooth {found.view.tooth}: {largest_text(found)}", err=True)
-    if out is not None:
-        echo(str(out))
-    if png is not None:
-        picture.drawn(png)
+        design = asked.design()
+        found = face_pressure(design.gearbox(asked.gearbox), _record(design, asked), gear, tooth)
+    table, said = pressure_table(found), largest_text(found)
+    echo(f"{found.view.state}, {found.view.gear} tooth {found.view.tooth}: {said}", err=True)
+    asked.hand_over(
+        table,
+        lambda file: save_pressure_figure(found, chosen_positions(found), file),
+        png,
+        lambda: {
+            "state": found.view.state, "gear": found.view.gear, "tooth": found.view.tooth, "flank": table.to_pydict()
+        },
+    )  # fmt: skip
+
+
+def _tooth(text: str | None) -> tuple[str | None, int | None]:
+    """Return gear and index of `gear:4`, or an index alone."""
+    if text is None:
+        return None, None
+    gear, _, index = text.rpartition(":")
+    if not index.isdecimal():
+        raise UsageError(f"--tooth {text}: allowed: an index such as 4, or a gear and an index such as gear:4")
+    return gear or None, int(index)
+
+
+def _record(design: SetDesign, asked: Inspection) -> PlannedRecord:
+    """Return the first record of the gearbox in a state, by default in its last one."""
+    from siggen.gearbox.plan import planned_record, record_ids_of
+    from siggen.keys.problems import nearest
+
+    ids, of_each = record_ids_of(design, asked.gearbox), design.points * design.repeats
+    names = design.state_names[: len(ids) // of_each]
+    state = names[-1] if asked.state is None else asked.state
+    if state not in names:
+        raise UsageError(f"--state: received '{state}'; allowed: {', '.join(names)}{nearest(state, names)}")
+    return planned_record(design, ids[names.index(state) * of_each])

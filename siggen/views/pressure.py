@@ -97,8 +97,8 @@ def face_pressure(
         )
     if gearbox.planets is not None:
         raise UsageError(
-            "planetary: received a section; allowed: null for pressures of a flank, which knows no carrier. `siggen "
-            "simulate` writes the forces of all meshes of a record"
+            "planetary: received a section; allowed: null for pressures of a flank, which knows no carrier. "
+            "`siggen show --internals` writes the forces of all meshes of a record"
         )
     called = None if gear is None else _gear_called(gearbox.names, gear)
     specimen = gearbox.in_state(record.state_id)
@@ -165,7 +165,7 @@ def _gear_called(names: Names, gear: str) -> str:
     """Return what a user calls a gear if there is one of that name."""
     called = [one.word for one in names.gears]
     if gear not in called:
-        raise UsageError(f"--gear {gear}; allowed: {', '.join(called)}{nearest(gear, called)}")
+        raise UsageError(f"--tooth {gear}; allowed: {', '.join(called)}{nearest(gear, called)}")
     return gear
 
 

@@ -42,7 +42,7 @@ def test_a_row_per_tooth_and_a_picture(tmp_path: Path) -> None:
 
 
 def test_the_table_is_what_the_records_were_labelled_with(tmp_path: Path) -> None:
-    run("--out", tmp_path / "e.parquet", "--specimen", 4, *CLASS_6)
+    run("--out", tmp_path / "e.parquet", "--gearbox", 4, *CLASS_6)
     table = pyarrow.parquet.read_table(tmp_path / "e.parquet")
     pinion, _ = gear_charts(load_config("tests/configs/casing.yaml", [CLASS_6[1]]).gearbox(4))
     largest = 1e6 * pinion.made.found.largest["profile_m"]

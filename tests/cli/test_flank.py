@@ -91,5 +91,5 @@ def test_damage_of_every_mesh_is_shown_unless_one_is_chosen(tmp_path: Path, pres
     run(preset, "--out", out, "--png", tmp_path / "f.png", *(("--state", state) if state else ()))
     assert gear in pyarrow.parquet.read_table(out)["gear"].to_pylist()
     if state:
-        run(preset, "--out", out, "--state", state, "--stage", "fast")
+        run(preset, "--out", out, "--state", state, "--mesh", "fast")
         assert pyarrow.parquet.read_table(out).num_rows == 0

@@ -26,7 +26,7 @@ def test_every_channel_has_a_curve_from_every_bearing_force(tmp_path: Path) -> N
         str(out),
         "--png",
         str(png),
-        "--specimen",
+        "--gearbox",
         "3",
     ]
     result = runner.invoke(app, arguments, catch_exceptions=False)

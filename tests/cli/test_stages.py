@@ -183,14 +183,14 @@ def test_the_plan_of_what_cannot_be_ends_with_the_path_and_no_traceback(tmp_path
 
 def test_a_stage_is_looked_at_by_its_name(tmp_path: Path, made: Path) -> None:
     file, table = written(tmp_path), tmp_path / "flank.csv"
-    done = run("inspect", "flank", file, "--stage", "slow", "--out", str(table))
+    done = run("inspect", "flank", file, "--mesh", "slow", "--out", str(table))
     assert done.returncode == 0, done.stderr
     (row,) = pc.read_csv(table).to_pylist()
     assert row["gear"] == "slow_pinion"
-    told = run("inspect", "flank", file, "--stage", "third", "--out", str(table)).stderr
+    told = run("inspect", "flank", file, "--mesh", "third", "--out", str(table)).stderr
     assert "allowed: fast, slow" in told
     curves = tmp_path / "tvms.csv"
-    done = run("inspect", "tvms", str(made / "config.yaml"), "--stage", "slow", "--out", str(curves))
+    done = run("inspect", "tvms", str(made / "config.yaml"), "--mesh", "slow", "--out", str(curves))
     assert done.returncode == 0, done.stderr
     assert "severe_n_per_m" in curves.read_text(encoding="utf-8").splitlines()[0]
 

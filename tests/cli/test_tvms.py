@@ -16,8 +16,8 @@ from siggen.errors import UsageError
 runner = CliRunner()
 
 
-def run(*arguments: object) -> str:
-    result = runner.invoke(app, ["inspect", "tvms", *map(str, arguments)], catch_exceptions=True)
+def run(*arguments: object, view: str = "tvms") -> str:
+    result = runner.invoke(app, ["inspect", view, *map(str, arguments)], catch_exceptions=True)
     if result.exception is not None and not isinstance(result.exception, SystemExit):
         raise result.exception
     assert result.exit_code == 0, result.output
@@ -69,7 +69,7 @@ def test_an_unknown_ending_is_refused_before_any_work(tmp_path: Path, name: str)
 
 @pytest.mark.drawn
 def test_parts_add_up_to_the_pair_of_the_damaged_tooth(tmp_path: Path) -> None:
-    run("configs/paper_a.yaml", "--out", tmp_path / "parts.parquet", "--png", tmp_path / "parts.png", "--parts")
+    run("configs/paper_a.yaml", "--out", tmp_path / "parts.parquet", "--png", tmp_path / "parts.png", view="parts")
     table = pyarrow.parquet.read_table(tmp_path / "parts.parquet")
     parts = [name for name in table.column_names if name.startswith("severe_") and name.endswith("_m_per_n")]
     assert len(parts) == 9
@@ -105,8 +105,8 @@ def test_a_picture_with_an_unknown_ending_is_refused_before_any_work(tmp_path: P
 def test_damage_as_geometry_is_drawn_as_it_is_simulated(tmp_path: Path) -> None:
     spall = "{kind: spall, teeth: 1, profile_length_mm: 1.5, face_length_mm: 20.0, depth_mm: 0.2}"
     states = f"states={{healthy: {{}}, severe: {{damage: {spall}}}}}"
-    arguments = ("--parts", "--potential-energy", "--torque", 45, "--png", tmp_path / "tvms.png", "--set", states)
-    said = run("tests/configs/ideal.yaml", "--out", tmp_path / "tvms.csv", *arguments)
+    arguments = ("--torque", 45, "--png", tmp_path / "tvms.png", "--set", states)
+    said = run("tests/configs/ideal.yaml", "--out", tmp_path / "tvms.csv", *arguments, view="parts")
     assert "quasi-static mesh stiffness at 45\u00a0N\u00a0m: force over approach, as simulated" in said
     table = pyarrow.csv.read_csv(tmp_path / "tvms.csv")
     columns = {name: table[name].to_numpy(zero_copy_only=False) for name in table.column_names}
@@ -136,7 +136,7 @@ def test_damage_as_geometry_is_drawn_as_it_is_simulated(tmp_path: Path) -> None:
 
 
 def test_where_damage_takes_stiffness_the_curve_is_the_potential_energy_and_has_no_sink(tmp_path: Path) -> None:
-    said = run("tests/configs/linear_pits.yaml", "--out", tmp_path / "tvms.parquet", "--potential-energy")
+    said = run("tests/configs/linear_pits.yaml", "--out", tmp_path / "tvms.parquet", view="parts")
     assert "mesh stiffness by potential energy" in said
     names = pyarrow.parquet.read_table(tmp_path / "tvms.parquet").column_names
     assert not [name for name in names if "sink" in name or "potential" in name]
@@ -146,7 +146,7 @@ def test_parts_of_a_contact_across_the_face_add_up_to_the_pair_that_is_simulated
     spall = "{kind: spall, face_length_mm: 10, profile_length_mm: 1.0, depth_mm: 0.2}"
     states = f"states={{healthy: {{}}, severe: {{damage: {spall}}}}}"
     face = ("--set", "dynamics.mesh.tip_relief_um=0", "--set", states)
-    run("configs/quickstart.yaml", "--out", tmp_path / "face.parquet", "--parts", "--torque", 60, *face)
+    run("configs/quickstart.yaml", "--out", tmp_path / "face.parquet", "--torque", 60, *face, view="parts")
     table = pyarrow.parquet.read_table(tmp_path / "face.parquet")
     for state in ("healthy", "severe"):
         parts = [n for n in table.column_names if n.startswith(f"{state}_") and n.endswith("_m_per_n")]

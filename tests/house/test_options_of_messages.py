@@ -92,7 +92,7 @@ def test_the_walk_finds_who_prints_what() -> None:
     readers = {f"siggen-diagnostics {name}" for name in ("baseline", "check", "explore", "indicators", "predict")}
     assert by["diagnostics.recordings.measured_recording:_mapping"] >= readers
     assert by["siggen.sets.loss_limit:LossLimit._message"] >= {"siggen generate"}
-    assert by["siggen.cli.tvms:tvms"] == {"siggen inspect tvms"}
+    assert by["siggen.cli.tvms:tvms"] == {"siggen inspect"}
     assert not by["diagnostics.cli.recording_options:RecordingOptions"] & {"siggen-diagnostics score"}
 
 

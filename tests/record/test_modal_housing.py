@@ -62,7 +62,7 @@ def record(config: SetDesign) -> SimulatedRecord:
 def test_a_box_of_plates_read_back_from_its_modes_gives_the_same_record(tmp_path: Path, share: float) -> None:
     """All of it: modes that move with the gears, residual flexibility, base, second stage, other drive, a foot."""
     file, short, foot = tmp_path / "modes.csv", "duration_s=0.1", f"housing.loose_foot_share={share}"
-    result = CliRunner().invoke(app, ["inspect", "path", "quickstart", "--modes", str(file), "--set", foot])
+    result = CliRunner().invoke(app, ["inspect", "housing", "quickstart", "--out", str(file), "--set", foot])
     assert result.exit_code == 0, result.output
     computed = load_config("quickstart", [short, foot])
     given = load_config("quickstart", [short, "housing.kind=modal", f"housing.modes={file}"])

@@ -51,12 +51,12 @@ def fleet(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_record_of_a_life_is_the_static_record_of_its_damage(fleet: Path, tmp_path: Path) -> None:
     (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives(), sort_keys=False))
-    run("inspect", "life", str(tmp_path / "lives.yaml"), "--as-states", str(tmp_path / "states.yaml"))
+    run("inspect", "life", str(tmp_path / "lives.yaml"), "--out", str(tmp_path / "states.yaml"))
     siggen.generate(load_config(tmp_path / "states.yaml", ["specimens=1"]), tmp_path / "set", workers=0)
     own = [{**row, "record_id": 0} for row in rows(fleet) if row["specimen_id"] == 0]
     static = [{**row, "record_id": 0} for row in rows(tmp_path / "set")]
     assert own == static
-    other = ["--specimen", "1", "--as-states", str(tmp_path / "other.yaml")]
+    other = ["--gearbox", "1", "--out", str(tmp_path / "other.yaml")]
     run("inspect", "life", str(tmp_path / "lives.yaml"), *other)
     states = yaml.safe_load((tmp_path / "other.yaml").read_text())["states"]
     assert len(states) == sum(row["specimen_id"] == 1 for row in rows(fleet))
@@ -176,7 +176,7 @@ def test_neither_states_nor_a_life_is_refused_with_both_ways_on() -> None:
 
 def test_a_file_of_states_is_never_overwritten(tmp_path: Path) -> None:
     (tmp_path / "lives.yaml").write_text(yaml.safe_dump(lives(), sort_keys=False))
-    command = ["inspect", "life", str(tmp_path / "lives.yaml"), "--as-states", str(tmp_path / "states.yaml")]
+    command = ["inspect", "life", str(tmp_path / "lives.yaml"), "--out", str(tmp_path / "states.yaml")]
     assert "wrote" in run(*command)
     with pytest.raises(UsageError, match="is there already"):
         CliRunner().invoke(app, command, catch_exceptions=False)

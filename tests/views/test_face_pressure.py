@@ -91,7 +91,7 @@ def test_a_further_mesh_is_found_by_its_gear_and_its_damaged_tooth_alone_is_unlo
     single = slice(60, 90)  # where one pair carries all
     assert damaged.force_n[single].min() < 0.3 * before.force_n[single].min()  # others differ by less than a tenth
     assert before.force_n[single].mean() == pytest.approx(20.0 * 47 / 18 / (0.5 * 17 * 3e-3 * 0.9397), rel=0.05)
-    with pytest.raises(UsageError, match="--gear pinion; allowed: ida, otto, eva, karl"):
+    with pytest.raises(UsageError, match="--tooth pinion; allowed: ida, otto, eva, karl"):
         face_pressure(*drawn_record(config, 1), "pinion")
 
 
@@ -106,7 +106,7 @@ def run(*arguments: object) -> tuple[int, str]:
 @pytest.mark.drawn
 def test_the_command_writes_table_and_picture_and_says_the_largest_pressures(tmp_path: Path) -> None:
     out, png = tmp_path / "p.csv", tmp_path / "p.png"
-    code, said = run("--record", 1, "--out", out, "--png", png)
+    code, said = run("--out", out, "--png", png)
     assert code == 0
     assert "largest elastic pressure at edges of 0.15 mm radius" in said
     table = pyarrow.csv.read_csv(out)
@@ -118,7 +118,7 @@ def test_the_command_writes_table_and_picture_and_says_the_largest_pressures(tmp
     ("arguments", "said"),
     [
         (("--tooth", 99), r"--tooth 99: pinion has \d+ teeth"),
-        (("--gear", "gear", "--tooth", 40, "--set", "duration_s=0.02"), "goes through mesh nowhere within the record"),
+        (("--tooth", "gear:40", "--set", "duration_s=0.02"), "goes through mesh nowhere within the record"),
         (LINEAR, "dynamics.mesh.law: received linear"),
     ],
 )
@@ -129,8 +129,6 @@ def test_what_cannot_be_drawn_is_refused_in_words(tmp_path: Path, arguments: tup
         "pressure",
         CONFIG,
         *options,
-        "--record",
-        "1",
         "--out",
         str(tmp_path / "p.csv"),
         *map(str, arguments),

@@ -131,7 +131,7 @@ def test_columns_and_labels_of_other_names_hold_the_same(made: Path) -> None:
 
 def test_a_flank_is_asked_for_by_the_name_of_its_gear(made: Path) -> None:
     config = load_config(made / "mill.yaml")
-    with pytest.raises(UsageError, match="--gear pinion; allowed: ida, otto, eva, karl"):
+    with pytest.raises(UsageError, match="--tooth pinion; allowed: ida, otto, eva, karl"):
         face_pressure(*drawn_record(config, 1), "pinion")
     assert face_pressure(*drawn_record(config, 1), "otto", 0).view.gear == "otto"
 

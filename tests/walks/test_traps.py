@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from siggen.cli.inspect import View
 from siggen.workers.choice import workers_of
 from siggen.workers.tasks import results
 from tests.every_command import LEAVES
@@ -44,7 +45,8 @@ def executed_by(line: str, folder: Path, factory: pytest.TempPathFactory, code: 
 
 
 def test_every_command_has_a_line() -> None:
-    assert sorted(LINES) == sorted(LEAVES)
+    views = [f"siggen inspect {view}" for view in View]
+    assert sorted(LINES) == sorted([*views, *(name for name in LEAVES if name != "siggen inspect")])
 
 
 @pytest.mark.parametrize("name", lines(LINES, QUICK))
