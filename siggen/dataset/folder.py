@@ -48,15 +48,16 @@ def content_of(storage: Storage, design: SetDesign) -> FolderContent:
         If the folder holds another set, a finished one of another version, one with more gearboxes, or files that are
         not a set. Nothing is ever deleted to make room.
     """
-    if not storage.exists(CONFIG):
-        _refuse_strangers(storage)
-        return FolderContent()
-    there = _refuse_other_set(storage, design)
     manifest = _manifest(storage)
     if manifest is None or manifest.identity != design.identity:
+        if not storage.exists(CONFIG):
+            _refuse_strangers(storage)
+            return FolderContent()
+        there = _refuse_other_set(storage, design)
         if there != design.specimens:
             raise _other_count(storage, there, design.specimens, "begun and not finished")
         return FolderContent(_earlier_of_shards(storage, design))
+    # a manifest that its own digest holds says what the set is, even where config.yaml is lost
     if manifest.specimens > design.specimens:
         raise _other_count(storage, manifest.specimens, design.specimens, "finished")
     if manifest.specimens == design.specimens and _has_every_file(storage, manifest):

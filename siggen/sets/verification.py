@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ from siggen.dataset.object_name import DATA_FOLDER, INTERNALS_FOLDER, LABELS, LI
 from siggen.dataset.reading import Dataset
 from siggen.dataset.seal import unsealed
 from siggen.dataset.shard import packed, unpacked
-from siggen.dataset.storage import Storage
+from siggen.dataset.storage import LocalFolder, Storage
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import ConfigError, DatasetError, VerificationError, counted
 from siggen.gearbox.design import SetDesign, stored_design
@@ -35,7 +35,7 @@ OWN_FOLDERS = (DATA_FOLDER, INTERNALS_FOLDER, LIFE_FOLDER)
 
 EXACT = "bit for bit"
 CLOSE = "within one step of the converter"
-STRANGER = "not part of the set"
+STRANGER, MISSING = "not part of the set", "missing"
 HASHES_ALONE = "hashes checked"
 """How the comparison begins of a set whose records another version of the simulation made."""
 
@@ -75,6 +75,8 @@ class Verification:
         The version that made the shards, with its fingerprint.
     here
         The version that compared.
+    repair
+        Sentences on how to make the set what it promises to be.
     """
 
     path: str
@@ -85,6 +87,7 @@ class Verification:
     mismatches: tuple[Mismatch, ...]
     made_by: str = ""
     here: str = ""
+    repair: tuple[str, ...] = ()
 
 
 def verify(
@@ -120,7 +123,8 @@ def verify(
         raise DatasetError(f"{storage.location}/{error}") from error
     except VerificationError as error:
         size = storage.sizes().get(MANIFEST, 0)
-        return Verification(storage.location, 1, size, (), "none", (Mismatch(MANIFEST, str(error)),))
+        lost = (Mismatch(MANIFEST, str(error)),)
+        return Verification(storage.location, 1, size, (), "none", lost, repair=_repair(storage, None, lost))
     mismatches = [*_file_mismatches(storage, manifest), *_strangers(storage, manifest), *_physics(storage)]
     if not mismatches:
         mismatches += _other_labels(storage, manifest)
@@ -135,9 +139,9 @@ def verify(
         mismatches += different
     total = sum(facts.bytes for facts in manifest.files.values())
     versions = version_text(manifest.environment), version_text(environment())
-    return Verification(
-        storage.location, len(manifest.files) + 1, total, records, comparison, tuple(mismatches), *versions
-    )
+    read, found = len(manifest.files) + 1, tuple(mismatches)
+    repair = _repair(storage, manifest, found)
+    return Verification(storage.location, read, total, records, comparison, found, *versions, repair)
 
 
 def why_not_again(manifest: Inventory, sample: int) -> str:
@@ -157,7 +161,7 @@ def _file_mismatches(storage: Storage, manifest: Inventory) -> Iterator[Mismatch
     sizes = storage.sizes()
     for name, facts in sorted(manifest.files.items()):
         if name not in sizes:
-            yield Mismatch(name, "missing")
+            yield Mismatch(name, MISSING)
         elif sizes[name] != facts.bytes:
             yield Mismatch(name, f"{sizes[name]} bytes instead of {facts.bytes}")
         elif problem := _content_problem(storage, name, facts.sha256):
@@ -257,12 +261,27 @@ def _sample(dataset: Dataset, count: int) -> list[int]:
 
 def problem_lines(found: Verification) -> list[str]:
     """Return one line per mismatch, and what repairs the set."""
-    lines = [f"{one.what}: {one.problem}" for one in found.mismatches]
-    spare = [one.what for one in found.mismatches if one.problem == STRANGER or one.what == PHYSICS]
-    damaged = [one.what for one in found.mismatches if one.what not in spare and not one.what.startswith("record")]
-    if spare:
-        lines.append(f"to repair it: remove {', '.join(spare)}")
-    if damaged and not found.comparison.startswith(HASHES_ALONE):
-        config = "CONFIG, the file that the set was made of," if CONFIG in damaged else quote(f"{found.path}/{CONFIG}")
-        lines.append(f"to make again what is missing or differs: siggen generate {config} --out {quote(found.path)}")
-    return lines
+    return [*(f"{one.what}: {one.problem}" for one in found.mismatches), *found.repair]
+
+
+def _repair(storage: Storage, manifest: Inventory | None, mismatches: Sequence[Mismatch]) -> tuple[str, ...]:
+    """Say what is to be removed, and the command that makes again what the set then lacks."""
+    spare = [one.what for one in mismatches if one.problem == STRANGER or one.what == PHYSICS]
+    damaged = [one for one in mismatches if one.what not in spare and not one.what.startswith("record")]
+    lines = [f"to repair it: {_removed(storage, spare)}"] if spare else []
+    if damaged and (manifest is None or not why_not_again(manifest, 1)):
+        config = quote(f"{storage.location}/{CONFIG}")
+        if manifest is not None and any(one.what == CONFIG for one in damaged):
+            config = f"CONFIG --set specimens={manifest.specimens}"
+            lines.append("CONFIG is the file that the set was made of, with its --set")
+        # `generate` compares sizes alone of a finished set, and makes what is missing
+        there = [one.what for one in damaged if one.problem != MISSING]
+        first = f"{_removed(storage, there)}\n" if there else ""
+        again = f"siggen generate {config} --out {quote(storage.location)}"
+        lines.append(f"to make again what is missing or differs:\n{first}{again}")
+    return tuple(lines)
+
+
+def _removed(storage: Storage, names: Sequence[str]) -> str:
+    places = " ".join(quote(f"{storage.location}/{name}") for name in names)
+    return f"rm {places}" if isinstance(storage, LocalFolder) else f"remove {places}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 from collections.abc import Sequence
 from dataclasses import replace
@@ -20,7 +21,16 @@ from siggen.dataset.environment import environment
 from siggen.errors import EXIT_MISMATCH, DatasetError
 from siggen.gearbox.design import SetDesign
 from siggen.sets.verification import CLOSE, EXACT, verify
-from tests.dataset.fake_set import FAKE_FILES, STEP_M_S2, simulate, verify_fake_set, write_fake_set
+from tests.dataset.fake_set import (
+    FAKE_FILES,
+    STEP_M_S2,
+    fake_physics,
+    file_bytes,
+    simulate,
+    small_shards,
+    verify_fake_set,
+    write_fake_set,
+)
 from tests.dataset.resealed_set import reseal
 
 
@@ -69,6 +79,34 @@ def test_the_command_ends_with_4_after_a_flipped_byte_in_any_file(folder: Path, 
     result = CliRunner().invoke(app, ["verify", str(folder)])
     assert result.exit_code == EXIT_MISMATCH
     assert name in result.stderr
+
+
+@pytest.mark.parametrize("damage", ["flipped", "cut", "missing"])
+@pytest.mark.parametrize("name", [*FAKE_FILES, "data/train-00009.parquet"])
+def test_the_printed_commands_repair_a_set(folder: Path, reference: Path, name: str, damage: str) -> None:
+    path = folder / name
+    if not path.exists():
+        path.write_bytes(b"a stranger")
+    elif damage == "flipped":
+        flip(path, path.stat().st_size // 2, 0)
+    elif damage == "cut" or name == "manifest.json":  # without a manifest it is no finished set
+        path.write_bytes(path.read_bytes()[:-1])
+    else:
+        path.unlink()
+    said = CliRunner().invoke(app, ["verify", str(folder)])
+    source = folder.parent / "source.yaml"
+    source.write_bytes((reference / "config.yaml").read_bytes())
+    for line in said.stderr.splitlines():
+        words = shlex.split(line.removeprefix("to repair it: ").replace("CONFIG ", f"{source} "))
+        if words[0] == "rm":
+            for removed in words[1:]:
+                Path(removed).unlink()
+        elif words[:2] == ["siggen", "generate"]:
+            with fake_physics(), small_shards():
+                made = CliRunner().invoke(app, [*words[1:], "--workers", "0"])
+            assert made.exit_code == 0, made.stderr
+    assert CliRunner().invoke(app, ["verify", str(folder), "--sample", "0"]).exit_code == 0
+    assert file_bytes(folder) == file_bytes(reference)
 
 
 @pytest.mark.parametrize("name", [name for name in FAKE_FILES if name != "manifest.json"])
