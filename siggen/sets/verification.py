@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from random import Random
 from shlex import quote
 
@@ -18,10 +18,10 @@ from siggen.dataset.environment import environment, fingerprint, version_text
 from siggen.dataset.gate import manifest_facts
 from siggen.dataset.inventory import Inventory
 from siggen.dataset.manifest import BLIND, CONFIG, INJECTED, MANIFEST, PHYSICS, read_manifest
-from siggen.dataset.object_name import DATA_FOLDER, INTERNALS_FOLDER, LABELS, LIFE_FOLDER
+from siggen.dataset.object_name import DATA_FOLDER, INTERNALS_FOLDER, LABELS, LIFE_FOLDER, internals_name
 from siggen.dataset.reading import Dataset
 from siggen.dataset.seal import unsealed
-from siggen.dataset.shard import packed, unpacked
+from siggen.dataset.shard import about_of, packed, unpacked
 from siggen.dataset.storage import LocalFolder, Storage
 from siggen.dataset.storage_at import storage_at
 from siggen.errors import ConfigError, DatasetError, VerificationError, counted
@@ -36,6 +36,7 @@ OWN_FOLDERS = (DATA_FOLDER, INTERNALS_FOLDER, LIFE_FOLDER)
 EXACT = "bit for bit"
 CLOSE = "within one step of the converter"
 STRANGER, MISSING = "not part of the set", "missing"
+EXTENDING = "of an extension that is not finished"
 HASHES_ALONE = "hashes checked"
 """How the comparison begins of a set whose records another version of the simulation made."""
 
@@ -177,8 +178,19 @@ def _content_problem(storage: Storage, name: str, promised: str) -> str:
 
 
 def _strangers(storage: Storage, manifest: Inventory) -> Iterator[Mismatch]:
-    for folder in OWN_FOLDERS:
-        yield from (Mismatch(name, STRANGER) for name in storage.names(folder) if name not in manifest.files)
+    strangers = [name for folder in OWN_FOLDERS for name in storage.names(folder) if name not in manifest.files]
+    begun = {name for name in strangers if _is_of_extension(storage, name, manifest)}
+    begun |= {internals_name(PurePosixPath(name).stem) for name in begun}
+    yield from (Mismatch(name, EXTENDING if name in begun else STRANGER) for name in strangers)
+
+
+def _is_of_extension(storage: Storage, name: str, manifest: Inventory) -> bool:
+    """Tell whether a file is a shard of this set with more gearboxes than it was finished with."""
+    try:
+        about = about_of(unpacked(storage.get(name), ["record_id"]))
+        return about["identity"] == manifest.identity and min(about["specimens"]) >= manifest.specimens
+    except (VerificationError, DatasetError, KeyError, TypeError, ValueError):
+        return False
 
 
 def _physics(storage: Storage) -> Iterator[Mismatch]:
@@ -267,17 +279,25 @@ def problem_lines(found: Verification) -> list[str]:
 def _repair(storage: Storage, manifest: Inventory | None, mismatches: Sequence[Mismatch]) -> tuple[str, ...]:
     """Say what is to be removed, and the command that makes again what the set then lacks."""
     spare = [one.what for one in mismatches if one.problem == STRANGER or one.what == PHYSICS]
-    damaged = [one for one in mismatches if one.what not in spare and not one.what.startswith("record")]
+    begun = [one.what for one in mismatches if one.problem == EXTENDING]
+    others = {*spare, *begun}
+    damaged = [one for one in mismatches if one.what not in others and not one.what.startswith("record")]
     lines = [f"to repair it: {_removed(storage, spare)}"] if spare else []
+    if begun:
+        where = quote(storage.location)
+        lines.append(
+            f"an extension to more gearboxes was begun, or is under way. To end it: siggen generate {where}/{CONFIG} "
+            f"--set specimens=N --out {where} with the number it had. To give it up: {_removed(storage, begun)}"
+        )
     if damaged and (manifest is None or not why_not_again(manifest, 1)):
-        config = quote(f"{storage.location}/{CONFIG}")
+        where = quote(storage.location)
+        again = f"siggen generate {where}/{CONFIG} --out {where}"
         if manifest is not None and any(one.what == CONFIG for one in damaged):
-            config = f"CONFIG --set specimens={manifest.specimens}"
-            lines.append("CONFIG is the file that the set was made of, with its --set")
+            again = f"siggen generate CONFIG --set specimens={manifest.specimens} --out {where}"
+            lines.append("CONFIG is the file that the set was made of")
         # `generate` compares sizes alone of a finished set, and makes what is missing
         there = [one.what for one in damaged if one.problem != MISSING]
         first = f"{_removed(storage, there)}\n" if there else ""
-        again = f"siggen generate {config} --out {quote(storage.location)}"
         lines.append(f"to make again what is missing or differs:\n{first}{again}")
     return tuple(lines)
 

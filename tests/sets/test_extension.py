@@ -9,10 +9,12 @@ from unittest.mock import patch
 
 import pyarrow as pa
 import pytest
+from typer.testing import CliRunner
 
+from siggen.cli.app import app
 from siggen.dataset.environment import environment
 from siggen.dataset.reading import open as open_set
-from siggen.errors import DatasetError, EngineError
+from siggen.errors import EXIT_MISMATCH, DatasetError, EngineError
 from siggen.sets.generation import generate
 from siggen.sets.set_run import Generation
 from tests.dataset.fake_set import (
@@ -107,6 +109,20 @@ def test_the_set_stays_readable_while_it_grows_and_the_same_call_continues(
     again = write(tmp_path / "set", 13)
     assert again.records_made < 36
     assert rows(tmp_path / "set") == rows(thirteen)
+
+
+def test_verify_of_a_set_that_grows_says_how_to_end_the_extension(seven: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(seven, tmp_path / "set"))
+    with fake_physics(), small_shards(30_000):
+        for number in (1, 2, 3, 4):
+            generate(fake_config(specimens=13), folder, 0, part=(number, 4))
+    said = CliRunner().invoke(app, ["verify", str(folder)])
+    assert said.exit_code == EXIT_MISMATCH
+    assert "of an extension that is not finished" in said.stderr
+    assert f"To end it: siggen generate {folder}/config.yaml --set specimens=N --out {folder} with" in said.stderr
+    assert "not part of the set" not in said.stderr
+    write(folder, 13)
+    assert verify_fake_set(folder, 5).mismatches == ()
 
 
 @pytest.mark.parametrize("name", ["manifest.json", "labels.parquet", "data/train-00001.parquet", "README.md"])
