@@ -120,8 +120,9 @@ def publish(
     Raises
     ------
     UsageError, ConfigError, DatasetError
-        As of `publication`, or if the target is not empty.
+        As of `publication`, or if the target is not empty, is inside the set, or holds it.
     """
+    _refuse_within(path, to)
     made = publication(path, facts_file, audit, with_recordings=with_recordings)
     dataset = open_set(path)
     own = {**made.texts, **_previews(dataset)}
@@ -134,6 +135,19 @@ def publish(
         files |= {name: {"bytes": len(text), "sha256": hashlib.sha256(text).hexdigest()} for name, text in own.items()}
         target.put(MANIFEST, sealed({**dataset.manifest, "files": files}))
     return made
+
+
+def _refuse_within(path: Path | str, to: Path | str) -> None:
+    """Refuse a target in the set, which is not to change, and one that the set is in."""
+    there, target = storage_at(path), storage_at(to)
+    if isinstance(there, LocalFolder) != isinstance(target, LocalFolder):
+        return
+    is_local = isinstance(there, LocalFolder)
+    own, other = (Path(one.path).resolve() if is_local else one.path for one in (there, target))
+    if other.is_relative_to(own) or own.is_relative_to(other):
+        raise UsageError(
+            f"{to}: received a folder inside the set {path}, or one that holds it; allowed: a folder beside the set"
+        )
 
 
 @contextmanager

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
+from typer.testing import CliRunner
 
 import siggen
 from siggen.checks.loading import load_config
+from siggen.cli.app import app
 from siggen.errors import ConfigError, UsageError
 from siggen.gearbox.description import assumed_numbers_section, class_words, physics_section
 from siggen.publication.publication_facts import TEMPLATE, read_publication_facts
@@ -32,6 +35,17 @@ def test_without_the_authors_nothing_is_published(kept: Path, tmp_path: Path) ->
     unset = {problem.path for problem in caught.value.problems if problem.received == "unset"}
     assert unset == {"license", "title", "published", "publisher", "url", "citation", "authors.0.name"}
     assert not (tmp_path / "set").exists()
+
+
+@pytest.mark.parametrize("where", ["sub", "data/sub", ".", "..", "../set/../set/sub", "../link/sub"])
+def test_a_target_in_the_set_or_around_it_is_refused(kept: Path, tmp_path: Path, where: str) -> None:
+    folder = Path(shutil.copytree(kept, tmp_path / "set"))
+    (tmp_path / "link").symlink_to(folder)
+    before = sorted(folder.rglob("*"))
+    given = ["publish", str(folder), "--to", str(folder / where), "--facts", str(facts_file(tmp_path))]
+    with pytest.raises(UsageError, match="allowed: a folder beside the set"):
+        CliRunner().invoke(app, given, catch_exceptions=False)
+    assert sorted(folder.rglob("*")) == before
 
 
 @pytest.mark.parametrize(
