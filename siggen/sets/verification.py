@@ -188,7 +188,7 @@ def _is_of_extension(storage: Storage, name: str, manifest: Inventory) -> bool:
     """Tell whether a file is a shard of this set with more gearboxes than it was finished with."""
     try:
         about = about_of(unpacked(storage.get(name), ["record_id"]))
-        return about["identity"] == manifest.identity and min(about["specimens"]) >= manifest.specimens
+        return bool(about["identity"] == manifest.identity and min(about["specimens"]) >= manifest.specimens)
     except (VerificationError, DatasetError, KeyError, TypeError, ValueError):
         return False
 
