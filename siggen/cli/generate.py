@@ -61,14 +61,14 @@ def generate(
     from siggen.sets.compilation import compilation_text
     from siggen.sets.generation import generate as generate_set
     from siggen.sets.generation import part_of
-    from siggen.workers.choice import default_workers
+    from siggen.workers.choice import workers_of
 
     loaded = load_config(config, overrides or ())
     chosen = None if part is None else part_of(part)
+    workers = workers_of(who.executor, who.workers, who.address).count
     with run_shown(log_json, out) as shown:
         for sentence in implausible(loaded.possible):
             shown.say(f"implausible: {sentence}")
-        workers = default_workers() if who.workers is None else who.workers
         if text := compilation_text(loaded.method, workers):
             shown.say(text)
         told: dict[str, Any] = {"events": shown.events, "allowed_loss": who.allowed_loss}

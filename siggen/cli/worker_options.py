@@ -34,7 +34,7 @@ class WorkerOptions:
             "--allowed-loss",
             min=0.0,
             max=1.0,
-            help="Stop when a state loses more than this share of its records; what was made stays. 1: never stop.",
+            help="Stop after the shard by which a state lost more than this share of its records. 1: never stop.",
             metavar="SHARE",
         ),
     ] = 0.1

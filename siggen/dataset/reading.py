@@ -195,6 +195,7 @@ class Dataset:
         UsageError
             If the split or a column does not exist.
         """
+        _check_batch_rows(batch_rows)
         for shard in self.shards(split):
             yield from self._shard_table(shard.file, shard.rows, columns).to_batches(max_chunksize=batch_rows)
 
@@ -215,8 +216,10 @@ class Dataset:
         Raises
         ------
         UsageError
-            If a column does not exist.
+            If a column does not exist, or the shard is none.
         """
+        if not isinstance(shard, ListedShard):
+            raise UsageError(f"shard: received {shard!r}; allowed: one of `shards()`")
         rows = self._shard_table(shard.file, shard.rows, columns)
         return (rows.to_batches() or [pa.RecordBatch.from_pylist([], schema=rows.schema)])[0]
 
@@ -231,6 +234,7 @@ class Dataset:
             If the set stores none, or the split or a column does not exist.
         """
         self._check_internals()
+        _check_batch_rows(batch_rows)
         for shard in self.shards(split):
             yield from self._shard_table(shard.internals, None, columns).to_batches(max_chunksize=batch_rows)
 
@@ -455,6 +459,11 @@ class Split:
         )
 
 
+def _check_batch_rows(batch_rows: object) -> None:
+    if batch_rows is not None and (type(batch_rows) is not int or batch_rows < 1):
+        raise UsageError(f"batch_rows: received {batch_rows!r}; allowed: 1, 2 and so on, or None for whole shards")
+
+
 def as_record(row: pa.Table | pa.RecordBatch) -> dict[str, Any]:
     """Return the first row: labels as Python values, signals and pulse times as arrays."""
     signals = {channel.column for channel in signal_channels(row.schema)}
@@ -483,5 +492,9 @@ def open(path: PurePath | str) -> Dataset:
     ------
     DatasetError
         If the folder is not a finished set; for an interrupted one the message says how to finish it.
+    UsageError
+        If the path is none.
     """
+    if not isinstance(path, str | PurePath):
+        raise UsageError(f"path: received {path!r}; allowed: the path of a folder, or s3://bucket/set")
     return Dataset(storage_at(path))

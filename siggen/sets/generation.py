@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from concurrent.futures import Executor
-from pathlib import Path
+from pathlib import Path, PurePath
 
 from siggen.dataset.folder import content_of
 from siggen.dataset.storage_at import storage_at
@@ -54,14 +54,15 @@ def generate(
     events : callable, optional
         Called with every event of the run as a mapping: `siggen.sets.run_journal.EVENTS` has their fields.
     allowed_loss : float
-        Share of a state's records that may fail, from 0 to 1; the run stops as soon as one has lost more.
+        Share of a state's records that may fail, from 0 to 1; the run stops at the end of the shard by which one has
+        lost more.
 
     Raises
     ------
     DatasetError
         If the folder holds something else, or is being written by another process.
     UsageError
-        If there is no such executor, or it cannot have so many workers.
+        If an argument cannot be: names it, what came and what is allowed.
     InterruptionError
         After SIGINT or SIGTERM.
     LossError
@@ -70,6 +71,7 @@ def generate(
         If a simulation raised, or workers kept dying. Finished shards stay.
     """
     expect_design(design)
+    _refuse_arguments(out, part)
     limit = LossLimit(design, allowed_loss)
     storage, chosen = storage_at(out), workers_of(executor, workers, address)
     with storage.writing(beside_others=part is not None):
@@ -80,6 +82,15 @@ def generate(
         with Interruption() as interruption:
             told = {"progress": progress or _silent, "events": events, "limit": limit}
             return SetRun(design, storage, chosen, interruption, content.earlier, part, **told).run()  # type: ignore[arg-type]
+
+
+def _refuse_arguments(out: object, part: object) -> None:
+    if not isinstance(out, str | PurePath):
+        raise UsageError(f"out: received {out!r}; allowed: the path of a folder, or s3://bucket/set")
+    if part is None:
+        return
+    if not (isinstance(part, tuple | list) and len(part) == 2 and all(type(one) is int for one in part)):
+        raise UsageError(f"part: received {part!r}; allowed: two integers, i of N with i from 1 to N, such as (3, 16)")
 
 
 def part_of(text: str) -> Part:

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import chain
+from numbers import Real
 
 from siggen.columns.record import RecordFailure
 from siggen.errors import EXIT_RECORDS_FAILED, SiggenError, UsageError, counted
@@ -24,7 +25,7 @@ class LossError(SiggenError):
 
 @dataclass(slots=True)
 class LossLimit:
-    """Counts failures by state, and raises as soon as a state has lost more than its share of the whole run.
+    """Counts failures by state, shard by shard; raises once a state has lost more than its share of the whole run.
 
     Attributes
     ----------
@@ -48,8 +49,9 @@ class LossLimit:
         ------
         UsageError
         """
-        if not 0.0 <= self.share <= 1.0:
-            raise UsageError(f"--allowed-loss: received {self.share:g}; allowed: 0 to 1, where 1 never stops")
+        is_number = isinstance(self.share, Real) and not isinstance(self.share, bool)
+        if not (is_number and 0.0 <= self.share <= 1.0):
+            raise UsageError(f"allowed_loss: received {self.share!r}; allowed: 0 to 1, where 1 never stops")
 
     def set(self, shard: str, failures: Sequence[RecordFailure]) -> None:
         """Count all failures of a shard, in place of what was counted before.

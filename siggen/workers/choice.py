@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager
 from functools import partial
+from numbers import Integral
 from typing import Any
 
 from siggen.errors import EngineError, UsageError
@@ -17,6 +18,8 @@ from siggen.workers.tasks import Workers
 NAMES = ("serial", "processes", "dask", "ray")
 OPEN_TASKS = 1_000
 """Of an executor that does not say how many workers it has."""
+SHUT_DOWN = ("_shutdown", "_shutdown_thread")
+"""How the thread and process pools of Python note that they take no more tasks."""
 
 
 def default_workers() -> int:
@@ -51,9 +54,16 @@ def workers_of(executor: Executor | str | None, workers: int | None, address: st
     Raises
     ------
     UsageError
-        If there is no such executor, or fewer than one worker is asked for, or an address without a cluster.
+        If there is no such executor, it was shut down, `workers` is no number that it can have, or an address is given
+        without a cluster.
     """
+    if workers is not None and (isinstance(workers, bool) or not isinstance(workers, Integral) or workers < 0):
+        raise UsageError(f"workers: received {workers!r}; allowed: 0, 1, 2 and so on, or None")
     if isinstance(executor, Executor):
+        if any(getattr(executor, flag, False) is True for flag in SHUT_DOWN):
+            raise UsageError(
+                f"executor: received a {type(executor).__name__} that was shut down; allowed: a running one"
+            )
         count = workers or getattr(executor, "_max_workers", None) or OPEN_TASKS
         return Workers(type(executor).__name__, count, _Given(executor))
     if executor is None:
@@ -70,7 +80,7 @@ def workers_of(executor: Executor | str | None, workers: int | None, address: st
         return Workers("serial", 1, SerialExecutor)
     count = default_workers() if workers is None else workers
     if count < 1:
-        raise UsageError(f"received {count} workers; at least 1 is needed")
+        raise UsageError(f"workers: received {count}; allowed: 1, 2 and so on, or 0 with the executor 'serial'")
     if executor == "processes":
         return Workers("processes", count, partial(worker_pool, count))
     found, pool = address_of(executor, address), dask_pool if executor == "dask" else ray_pool

@@ -166,3 +166,15 @@ def test_a_damaged_shard_is_named_with_the_way_to_mend_it(tmp_path: Path) -> Non
     shard.write_bytes(bytes(content))
     with pytest.raises(DatasetError, match=r"(?s)train-00000\.parquet is not the promised file .*`siggen verify"):
         list(open_set(tmp_path / "set").records("train"))
+
+
+def test_what_cannot_be_read_is_refused_by_the_name_of_its_argument(tmp_path: Path) -> None:
+    copy_fake_set(tmp_path / "set")
+    dataset = open_set(tmp_path / "set")
+    with pytest.raises(UsageError, match=r"^path: received 3; allowed: "):
+        open_set(3)  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match=r"^shard: received 3; allowed: one of `shards"):
+        dataset.shard_rows(3)  # type: ignore[arg-type]
+    for rows in (0, -1, 1.5):
+        with pytest.raises(UsageError, match=r"^batch_rows: received .*; allowed: 1, 2"):
+            next(dataset.records(batch_rows=rows))  # type: ignore[arg-type]

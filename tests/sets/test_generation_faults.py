@@ -8,12 +8,17 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
-from siggen.errors import EXIT_INTERRUPTED, DatasetError, EngineError
+import siggen
+from siggen.cli.app import app
+from siggen.errors import EXIT_INTERRUPTED, DatasetError, EngineError, UsageError
 from siggen.file_writing import LEFTOVER_SUFFIX
 from siggen.sets.generation import generate
 from siggen.sets.set_run import InterruptionError
@@ -184,3 +189,42 @@ def test_a_disk_that_takes_no_more_stops_with_what_to_do_and_the_rest_is_made_la
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     write_fake_set(tmp_path)
     assert_complete(tmp_path, reference)
+
+
+def ended(kind: type[ThreadPoolExecutor | ProcessPoolExecutor]) -> Executor:
+    executor = kind(1)
+    executor.shutdown()
+    return executor
+
+
+@pytest.mark.parametrize(
+    ("argument", "value"),
+    [
+        *(("part", value) for value in ("1/2", (1, 2, 3), 1, (1.0, 2), (3, 2))),
+        *(("workers", value) for value in (1.5, "2", -1, True)),
+        *(("allowed_loss", value) for value in ("a", float("nan"), -0.1, None)),
+        *(("out", value) for value in (5, None)),
+    ],
+)
+def test_an_argument_that_cannot_be_is_refused_by_its_name(tmp_path: Path, argument: str, value: object) -> None:
+    given = {"out": tmp_path / "set", "executor": "serial", argument: value}
+    with pytest.raises(UsageError, match=rf"^{argument}: received .*; allowed: "):
+        siggen.generate(fake_config(), **given)  # type: ignore[arg-type]
+    assert not (tmp_path / "set/config.yaml").exists()
+
+
+@pytest.mark.parametrize("kind", [ThreadPoolExecutor, ProcessPoolExecutor])
+def test_an_executor_that_was_shut_down_is_refused(
+    tmp_path: Path, kind: type[ThreadPoolExecutor | ProcessPoolExecutor]
+) -> None:
+    with pytest.raises(UsageError, match=rf"^executor: received a {kind.__name__} that was shut down; allowed: "):
+        siggen.generate(fake_config(), tmp_path / "set", executor=ended(kind))
+    assert not (tmp_path / "set").exists()
+
+
+def test_an_unknown_executor_is_refused_before_anything_is_announced(tmp_path: Path) -> None:
+    given = ["generate", "quickstart", "--out", str(tmp_path / "set"), "--executor", "foo"]
+    with patch("siggen.sets.compilation.is_compiled", lambda _: False):
+        said = CliRunner().invoke(app, given)
+    assert isinstance(said.exception, UsageError)
+    assert "compiling" not in said.stderr

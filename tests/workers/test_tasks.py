@@ -112,7 +112,7 @@ def test_what_is_no_executor_is_refused_with_what_there_is(monkeypatch: pytest.M
             workers_of(wrong, 2)  # type: ignore[arg-type]
     with pytest.raises(UsageError, match="received the address a:1 and the executor processes; allowed: with dask"):
         workers_of(None, 2, "a:1")
-    with pytest.raises(UsageError, match="received 0 workers"):
+    with pytest.raises(UsageError, match="workers: received 0; allowed"):
         workers_of("processes", 0)
     monkeypatch.setattr("siggen.workers.choice.default_workers", lambda: 5)
     assert workers_of("processes", None).count == 5
