@@ -97,15 +97,18 @@ def history_text(summary: dict[str, Any]) -> str:
 
 
 def cost_summary(cost: SetCost, summary: dict[str, Any], design: SetDesign) -> dict[str, Any]:
-    """Return the CPU hours of a set, and what they were worked out from."""
+    """Return the CPU hours of a set, the share of its largest shard, and what the hours were worked out from."""
     from dataclasses import asdict
+
+    from siggen.gearbox.plan import SPLITS, specimen_count, specimens_per_shard
 
     records = summary["records"]
     damaged = design.specimens * (design.state_count - 1)
     if summary["life"] is not None:
         damaged = round(records * summary["life"]["pitted_inspections"])
     hours = cost.hours(design.specimens, damaged, records, design.duration_s)
-    return {"cpu_hours": hours, **asdict(cost)}
+    largest = min(specimens_per_shard(design), max(specimen_count(design, split) for split in SPLITS))
+    return {"cpu_hours": hours, "largest_shard": largest / design.specimens, **asdict(cost)}
 
 
 def cost_text(found: dict[str, Any]) -> str:
@@ -114,8 +117,10 @@ def cost_text(found: dict[str, Any]) -> str:
     from siggen.workers.choice import default_workers
 
     workers = default_workers()
-    here = f"about {_duration(found['cpu_hours'])} of this processor, {_duration(found['cpu_hours'] / workers)} with "
+    hours, share = found["cpu_hours"], found["largest_shard"]  # a worker makes a shard by itself
+    here = f"about {_duration(hours)} of this processor, {_duration(hours * max(1.0 / workers, share))} with "
     here += counted(workers, "process", "processes")
+    here += f", as the largest shard is {share:.0%} of the set" if share > 1.0 / workers else ""
     of_each = f"{found['signal_s']:.2g} s per second of signal, {found['damage_s']:.2g} s per damaged state"
     return f"{here} (estimated from the trial: {of_each}, {found['gearbox_s']:.2g} s per gearbox)"
 

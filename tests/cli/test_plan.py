@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 from typer.testing import CliRunner
 
+from siggen.checks.loading import load_config
 from siggen.cli.app import app
+from siggen.cli.life_table import cost_summary, cost_text
 from siggen.cli.plan import plan_summary
 from siggen.config import yaml_text
 from siggen.gearbox.design import SetDesign
+from siggen.sets.record_cost import SetCost
+from siggen.sets.set_run import planned_shards
 from tests.config.minimal import config, minimal
 
 
@@ -134,3 +139,16 @@ def test_a_set_of_pairs_tells_them_and_the_mesh_frequencies_of_all(tmp_path):
     assert summary["mesh_hz"] == [540, 750]
     assert summary["pairs"][2] == "25/56 teeth, m 2.5, b 25 mm"
     assert "3, of which its gearboxes have 2: 18/47 teeth" in run("plan", found)
+
+
+def test_more_workers_than_shards_make_a_set_no_faster_than_its_largest_shard() -> None:
+    design = load_config("quickstart")
+    counts = [shard.record_count for shard in planned_shards(design)]
+    summary = {"records": sum(counts), "life": None}
+    cost = cost_summary(SetCost(1.0, 1.0, 1.0, 1.0), summary, design)
+    assert cost["largest_shard"] == max(counts) / sum(counts)
+    with patch("siggen.workers.choice.default_workers", lambda: 16):
+        said = cost_text({**cost, "cpu_hours": 10.0})
+    assert said.startswith("about 10 h of this processor, 5.83 h with 16 processes, as the largest shard is 58% of the")
+    with patch("siggen.workers.choice.default_workers", lambda: 1):
+        assert "largest" not in cost_text(cost)
