@@ -33,7 +33,8 @@ def test_what_differs_comes_with_what_repairs_it(folder: Path) -> None:
     (folder / "README.md").write_text("x")
     (folder / "data" / "x.parquet").touch()
     said = CliRunner().invoke(app, ["verify", str(folder)]).stderr
-    assert "to repair it: remove data/x.parquet" in said
+    assert f"to repair it: rm {folder}/data/x.parquet\n" in said
+    assert f"\nrm {folder}/README.md\n" in said
     assert f"siggen generate {folder}/config.yaml --out {folder}" in said
 
 
