@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-import siggen.record.simulation
+import siggen.sets.drawn
 from siggen.cli.app import app
 from siggen.errors import EXIT_MISMATCH, DatasetError
 from tests.dataset.fake_set import FAKE_FILES, copy_fake_set, simulate
