@@ -252,16 +252,17 @@ class PairLaw:
         The energy is that without tilt, to the second order in the place.
         """
         upright = RAYS.index(0.0)
-        (energy, force, slope), across, shares = self.along(pair, radius, upright)
+        (_, force, slope), across, shares = self.along(pair, radius, upright)
         (first, second), over, span = self.ends(pair, radius, upright)
-        t = min(over / span, 1.0)
-        turning = first[7] * (1.0 - t) + second[7] * t
-        growing = (second[7] - first[7]) / span if over <= span else 0.0
-        # W_pp = 4 r (r T - F), T = dM/dθ / h², and its derivatives to the radius; the second one without T_r.
+        turning, growing, growing_2 = cubic(first[6:8], second[6:8], over, span)
+        _, _, slope_2 = cubic(first[0:2], second[0:2], over, span)
+        # W without tilt: at the node before it stands on the ray beside, from there on it is the force's integral.
+        energy = self.ends(pair, radius, upright + 1)[0][0][7] + gained(first, second, over, span)
+        # W_pp = 4 r (r T - F), T = dM/dθ / h², and its derivatives to the radius.
         bent = (
             4.0 * radius * (radius * turning - force),
             4.0 * (2.0 * radius * turning + radius**2 * growing - force - radius * slope),
-            8.0 * (turning - slope),
+            4.0 * (2.0 * (turning - slope) + radius * (4.0 * growing + radius * growing_2 - slope_2)),
         )
         values = [
             w + place * w_p + 0.5 * place**2 * w_pp
@@ -274,11 +275,7 @@ class PairLaw:
         (first, second), over, span = self.ends(pair, radius, ray)
         pushed = cubic((first[0], first[1]), (second[0], second[1]), over, span)
         across = cubic((first[4], first[5]), (second[4], second[5]), over, span)
-        within = min(over, span)
-        t, rise = within / span, (second[0] - first[0]) / span
-        bend, twist = 3.0 * rise - 2.0 * first[1] - second[1], first[1] + second[1] - 2.0 * rise
-        energy = first[6] + within * (first[0] + within * (first[1] / 2.0 + t * (bend / 3.0 + t * twist / 4.0)))
-        energy += (over - within) * (second[0] + 0.5 * (over - within) * second[1])
+        t, energy = min(over, span) / span, first[6] + gained(first, second, over, span)
         shares = [first[k] * (1.0 - t) + second[k] * t for k in (2, 3)]
         return (energy, *pushed[:2]), across, shares
 
@@ -340,8 +337,17 @@ class PairLaw:
 
 RAYS = [-1.0 - math.sqrt(2.0), -1.5, -0.8, -0.3, 0.0, 0.3, 0.8, 1.5, 1.0 + math.sqrt(2.0)]
 """tan(φ/2) of the rays, φ the angle from no tilt in the plane of approach and lift."""
-NEAR = 0.05
+NEAR = 0.04
 """Up to here the energy follows from the face without tilt."""
+
+
+def gained(first, second, over, span):
+    """Return the integral of the cubic through force and slope at two nodes, from the first one to `over` [J]."""
+    within = min(over, span)
+    t, rise = within / span, (second[0] - first[0]) / span
+    bend, twist = 3.0 * rise - 2.0 * first[1] - second[1], first[1] + second[1] - 2.0 * rise
+    energy = within * (first[0] + within * (first[1] / 2.0 + t * (bend / 3.0 + t * twist / 4.0)))
+    return energy + (over - within) * (second[0] + 0.5 * (over - within) * second[1])
 
 
 def cubic(left, right, over, span):

@@ -22,8 +22,8 @@ PALMGREN = 4.4e-4
 """mm N^(-2/3) mm^(1/3), as `siggen.rig.bearings`."""
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(48)
 """On an angle t with ψ = ψ_0 sin t, over which the load vanishes smoothly: exact to rounding."""
-CHORDS, EXACT = 60, 1e-13
-"""Most chords on the way to a deflection, and what is left of the force's two-thirds power; some six chords do."""
+CHORDS, HALVINGS, EXACT = 30, 60, 1e-13
+"""Most chords and halvings on the way to a deflection, and what is left of F^(2/3); some six chords do from 1 N on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,21 +134,32 @@ class BallBearing:
         if force_n == 0.0:
             return low
         # F^(2/3) is nearly straight over the way: the chord's zero, its idle end at half its height (Dowell and Jarratt
-        # 1971).
-        wanted = force_n ** (2.0 / 3.0)
-        closed, reach = low, 1e-6
-        below, high, above = -wanted, low, -wanted
+        # 1971). Under a light load rounding ends it: the bracket is halved then.
+        wanted = float(force_n ** (2.0 / 3.0))
+        closed, reach, high, above = low, 1e-6, low, -wanted
         while above < 0.0:
             low, below, high, reach = high, above, closed + reach, 2.0 * reach
-            above = self.force_n(high) ** (2.0 / 3.0) - wanted
-        for _ in range(CHORDS):
-            if abs(above) <= EXACT * wanted:
-                break
+            above = self._root_force(high) - wanted
+        last = 0.0
+        for step in range(CHORDS + HALVINGS):
             crossing = high - above * (high - low) / (above - below)
-            found = self.force_n(crossing) ** (2.0 / 3.0) - wanted
-            low, below = (high, above) if found * above < 0.0 else (low, 0.5 * below)
-            high, above = crossing, found
+            if step >= CHORDS or not low < crossing < high:
+                crossing = 0.5 * (low + high)
+            if crossing in (low, high):
+                break
+            left = self._root_force(crossing) - wanted
+            if abs(left) <= EXACT * wanted:
+                return crossing
+            if left < 0.0:
+                low, below, above = crossing, left, above * (0.5 if last < 0.0 else 1.0)
+            else:
+                high, above, below = crossing, left, below * (0.5 if last > 0.0 else 1.0)
+            last = left
         return high
+
+    def _root_force(self, deflection_m: float) -> float:
+        """Return F^(2/3); rounding may take a force without load below 0."""
+        return float(max(self.force_n(deflection_m), 0.0) ** (2.0 / 3.0))
 
 
 # LoadedBearing: how stiff a ball bearing is under its load, and how far it moves as its balls pass.

@@ -46,7 +46,11 @@ class RayPlace(NamedTuple):
 
 
 class AlongRay(NamedTuple):
-    """W [J], W_r [N], W_rr [N/m], W_p [J], W_pr [N], W_prr [N/m], shares of carrying and of damage, T [N/m] and T_r."""
+    """W [J], W_r [N], W_rr [N/m], W_p [J], W_pr [N], W_prr [N/m], shares of carrying and of damage.
+
+    Then what the table holds beside the rays (`contact_table`): without tilt T [N/m] and T_r; by how much W [J] is more
+    than at the node before; W of the ray without tilt at that node [J], of the rays beside it; W_rrr and T_rr.
+    """
 
     energy: float
     radial: float
@@ -58,6 +62,10 @@ class AlongRay(NamedTuple):
     rough: float
     turning: float
     turning_slope: float
+    gained: float
+    beside: float
+    radial_bend: float
+    turning_bend: float
 
 
 class TiltedAnswer(NamedTuple):
@@ -131,32 +139,37 @@ def along_ray(numbers: FloatArray, place: RayPlace, ray: int) -> AlongRay:
     second = (2.0 * bend + 6.0 * t * twist) * (1.0 / span)
     area = within * (low + within * (0.5 * s_0 + t * (bend / 3.0 + 0.25 * t * twist)))
     shares, beyond = low + t * (high - low), over - within
-    energy, curved = extract(low, 6) + extract(area, 0), extract(second, 4)
-    growing = extract(rise, 7)
+    gained = extract(area, 0)
     if beyond > 0.0:
-        energy += beyond * (extract(value, 0) + 0.5 * beyond * extract(slope, 0))
-        value, curved, growing = value + beyond * slope, 0.0, 0.0
+        gained += beyond * (extract(value, 0) + 0.5 * beyond * extract(slope, 0))
+        value, second = value + beyond * slope, second * 0.0
     return AlongRay(
-        energy, extract(value, 0), extract(slope, 0), extract(value, 4), extract(slope, 4), curved,
-        extract(shares, 2), extract(shares, 3), extract(shares, 7), growing,
+        extract(low, 6) + gained, extract(value, 0), extract(slope, 0), extract(value, 4), extract(slope, 4),
+        extract(second, 4), extract(shares, 2), extract(shares, 3), extract(value, 6), extract(slope, 6), gained,
+        extract(low, 7), extract(second, 0), extract(second, 6),
     )  # fmt: skip
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _beside(upright: AlongRay, p: float, radius: float) -> tuple[AlongRay, float]:
-    """Return what stands at a small p beside the ray without tilt, to the second order, and W_pp."""
+def _beside(upright: AlongRay, energy: float, p: float, radius: float) -> tuple[AlongRay, float]:
+    """Return what stands at a small p beside the ray without tilt, to the second order, and W_pp.
+
+    `energy` [J]: W without tilt at the node before.
+    """
     force, stiffness, turning = upright.radial, upright.radial_slope, upright.turning
     bent = 4.0 * radius * (radius * turning - force)
     steeper = 4.0 * (radius * (2.0 * turning + radius * upright.turning_slope - stiffness) - force)
-    curved, half = 8.0 * (turning - stiffness), 0.5 * p * p
+    growing = radius * (4.0 * upright.turning_slope + radius * upright.turning_bend - upright.radial_bend)
+    curved, half = 4.0 * (2.0 * (turning - stiffness) + growing), 0.5 * p * p
     beside = AlongRay(
-        upright.energy + p * upright.across + half * bent,
+        energy + upright.gained + p * upright.across + half * bent,
         force + p * upright.across_slope + half * steeper,
         stiffness + p * upright.across_bend + half * curved,
         upright.across + p * bent,
         upright.across_slope + p * steeper,
         upright.across_bend + p * curved,
-        upright.carrying, upright.rough, turning, upright.turning_slope,
+        upright.carrying, upright.rough, turning, upright.turning_slope, upright.gained, energy,
+        upright.radial_bend, upright.turning_bend,
     )  # fmt: skip
     return beside, bent
 
@@ -194,14 +207,15 @@ def tilted_answer(
     low = along_ray(numbers, place, ray)
     carrying, rough = low.carrying, low.rough
     if size <= NEAR:
-        low, bent = _beside(low, p, radius)
+        low, bent = _beside(low, 0.0, p, radius)  # of the energy only derivatives are asked for
         found = _Energy(low.radial, low.across, low.radial_slope, low.across_slope, bent)
     else:
         behind, first = ray + 1, _ray(ray)
         if ray == UPRIGHT:
             behind, first = (ray + 1, NEAR) if p > 0.0 else (ray - 1, -NEAR)
-            low, _ = _beside(low, first, radius)
         high, width = along_ray(numbers, place, behind), _ray(behind) - first
+        if ray == UPRIGHT:
+            low, _ = _beside(low, high.beside, first, radius)
         x = (p - first) / width
         found = _between(low, high, width, x)
         carrying += x * (high.carrying - carrying)

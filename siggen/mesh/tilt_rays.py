@@ -27,7 +27,7 @@ from siggen.arrays import FloatArray
 
 HALF_RAYS = (0.0, 0.3, 0.8, 1.5, 1.0 + 2.0**0.5)
 """p of the rays to one side; the last one is that on which a rigid corner comes to touch."""
-NEAR = 0.05
+NEAR = 0.04
 """p up to which a face counts as one without tilt, to the second order."""
 RAYS = np.array([-p for p in HALF_RAYS[:0:-1]] + list(HALF_RAYS))
 UPRIGHT = len(HALF_RAYS) - 1
