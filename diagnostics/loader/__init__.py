@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from diagnostics.loader.epoch_order import Shuffling
-    from diagnostics.loader.window_dataset import RowGroupSampler, WindowDataset
+    from diagnostics.loader.window_dataset import ShardSampler, WindowDataset
     from diagnostics.loader.window_index import StreamSettings
     from diagnostics.loader.window_stream import WindowLoader, WindowStream
 
-__all__ = ["RowGroupSampler", "Shuffling", "StreamSettings", "WindowDataset", "WindowLoader", "WindowStream"]
+__all__ = ["ShardSampler", "Shuffling", "StreamSettings", "WindowDataset", "WindowLoader", "WindowStream"]
 
 _HOMES = {
-    "RowGroupSampler": "window_dataset",
+    "ShardSampler": "window_dataset",
     "Shuffling": "epoch_order",
     "StreamSettings": "window_index",
     "WindowDataset": "window_dataset",

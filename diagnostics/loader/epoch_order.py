@@ -1,6 +1,6 @@
 """Who reads which window when: the windows of an epoch over ranks, workers, buffers and batches.
 
-Row groups are permuted; every rank takes an equal stretch of the windows in that order, every worker of it a stretch of
+Shards are permuted; every rank takes an equal stretch of the windows in that order, every worker of it a stretch of
 whole batches, so that ranks differ by one window at most and batches come from the workers strictly in turn; what is
 decoded together is shuffled together. Pure: the same arguments give the same order on any machine. Source: derived.
 """
@@ -24,8 +24,8 @@ class Shuffling:
     ----------
     seed : int or None
         None keeps the order of the files.
-    buffer_groups : int
-        Row groups that are shuffled together.
+    buffer_shards : int
+        Shards that are shuffled together.
     rank, world_size : int
         Which of how many processes; each has an equal part of every epoch.
 
@@ -36,7 +36,7 @@ class Shuffling:
     """
 
     seed: int | None = 0
-    buffer_groups: int = 4
+    buffer_shards: int = 4
     rank: int = 0
     world_size: int = 1
 
@@ -71,7 +71,7 @@ def epoch_chunks(group: np.ndarray, epoch: int, reader: Lane, batch: int, shuffl
     Parameters
     ----------
     group : (n,) int
-        Row group of every window, ascending.
+        Shard of every window, ascending.
     epoch : int
         Another epoch, another order.
     reader : Lane
@@ -84,7 +84,7 @@ def epoch_chunks(group: np.ndarray, epoch: int, reader: Lane, batch: int, shuffl
     Returns
     -------
     list of (k,) int
-        Numbers of windows; a chunk needs `buffer_groups` row groups at most.
+        Numbers of windows; a chunk needs `buffer_shards` shards at most.
     """
     place = _group_places(int(group[-1]) + 1 if group.size else 0, epoch, shuffling)
     sequence = np.argsort(place[group], kind="stable")
@@ -92,7 +92,7 @@ def epoch_chunks(group: np.ndarray, epoch: int, reader: Lane, batch: int, shuffl
     ends = np.cumsum(lane_sizes(last - first, batch, reader.workers))
     start = int(ends[reader.worker - 1]) if reader.worker else 0
     lane = sequence[first + start : first + int(ends[reader.worker])]
-    buffer = place[group[lane]] // shuffling.buffer_groups
+    buffer = place[group[lane]] // shuffling.buffer_shards
     chunks = np.split(lane, np.flatnonzero(np.diff(buffer)) + 1) if lane.size else []
     if shuffling.seed is None:
         return chunks
@@ -101,7 +101,7 @@ def epoch_chunks(group: np.ndarray, epoch: int, reader: Lane, batch: int, shuffl
 
 
 def _group_places(groups: int, epoch: int, shuffling: Shuffling) -> np.ndarray:
-    """Return at which place every row group comes; the same for all ranks and workers."""
+    """Return at which place every shard comes; the same for all ranks and workers."""
     if shuffling.seed is None:
         return np.arange(groups)
     return generator(shuffling.seed, Purpose.LOADER, epoch).permutation(groups)

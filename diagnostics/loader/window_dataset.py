@@ -1,7 +1,7 @@
 """Windows of a set by number, for samplers, `DataLoader(batch_size=...)` and trainers that want a length.
 
     windows = WindowDataset(siggen.open("runs/set"), "train", cache=Path("cache"))
-    loader = DataLoader(windows, batch_size=64, sampler=RowGroupSampler(windows), num_workers=2)
+    loader = DataLoader(windows, batch_size=64, sampler=ShardSampler(windows), num_workers=2)
 
 Batches are the same for any number of workers, since the sampler stays in one process.
 """
@@ -19,19 +19,19 @@ from torch.utils.data import Sampler
 
 from diagnostics.loader.epoch_order import Lane, Shuffling, epoch_chunks
 from diagnostics.loader.window_index import StreamSettings, window_index
-from diagnostics.loader.window_sample import RowGroupSignals, Sample, Transform, transformed, window_sample
+from diagnostics.loader.window_sample import Sample, ShardSignals, Transform, transformed, window_sample
 from diagnostics.records.usable_records import of_quantity
 from siggen.dataset.reading import Dataset
 
 KEPT_BYTES = 256 << 20
-"""Decoded records that a process keeps, whole row groups of them; a record alone costs as much as its row group."""
+"""Decoded records that a process keeps, whole shards of them; a record alone costs as much as its shard."""
 
 
 class WindowDataset(TorchDataset[Sample]):  # type: ignore[misc]  # the type checker does not read torch
     """Windows of one split; `dataset[k]` is a dict with `windows` (channels, samples) float32 and the labels.
 
-    Row groups are decoded whole and kept up to 256 MB. Where a split is larger, a window in random order costs the
-    reading of its row group; with `RowGroupSampler` or a cache it does not.
+    Shards are decoded whole and kept up to 256 MB. Where a split is larger, a window in random order costs the
+    reading of its shard; with `ShardSampler` or a cache it does not.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class WindowDataset(TorchDataset[Sample]):  # type: ignore[misc]  # the type che
         chosen = settings or StreamSettings()
         dataset = of_quantity(dataset, chosen.quantity)
         self.index = window_index(dataset, split, chosen, labels)
-        self.signals = RowGroupSignals(dataset, split, dataset.shards(split), chosen, self.index, cache)
+        self.signals = ShardSignals(dataset, split, dataset.shards(split), chosen, self.index, cache)
         self.transform, self.seed = transform, seed
         # shared, so that copies in worker processes count on where an earlier epoch's stopped
         self._drawn = torch.zeros(self.index.size, dtype=torch.int64).share_memory_()
@@ -96,7 +96,7 @@ class WindowDataset(TorchDataset[Sample]):  # type: ignore[misc]  # the type che
         return transformed(sample, self.transform, self.seed, drawn, number)
 
     def _record(self, number: int) -> Sequence[np.ndarray]:
-        """Return the decoded channels of a window's record; the latest row groups stay in memory."""
+        """Return the decoded channels of a window's record; the latest shards stay in memory."""
         group = int(self.index.group[number])
         if group not in self._groups:
             usable = np.flatnonzero(self.index.lengths[group]).tolist()
@@ -114,7 +114,7 @@ def _bytes(records: Mapping[int, Sequence[np.ndarray]]) -> int:
     return sum(channel.nbytes for channels in records.values() for channel in channels)
 
 
-class RowGroupSampler(Sampler[int]):  # type: ignore[misc]
+class ShardSampler(Sampler[int]):  # type: ignore[misc]
     """Numbers of windows in the shuffled order of a `WindowDataset`, another one in every epoch.
 
     Records that lie together on disk are drawn close to each other, so that each is decoded few times. The order
@@ -125,7 +125,7 @@ class RowGroupSampler(Sampler[int]):  # type: ignore[misc]
     windows : WindowDataset
         What is drawn from.
     shuffling : Shuffling, optional
-        Seed, row groups that are mixed, and which of how many processes this is.
+        Seed, shards that are mixed, and which of how many processes this is.
     """
 
     def __init__(self, windows: WindowDataset, shuffling: Shuffling | None = None) -> None:

@@ -1,4 +1,4 @@
-"""Where every window of a split lies: row group, row, and first sample, from the tacho pulses alone.
+"""Where every window of a split lies: shard, row, and first sample, from the tacho pulses alone.
 
 Labels of windows on request: any number of the set's labels, the damaged tooth, its outline, and the shaft's angle.
 
@@ -165,13 +165,13 @@ class WindowIndex:
     Attributes
     ----------
     group, row, start : (windows,) int
-        Row group, row in it, and first sample in the decoded record.
+        Shard, row in it, and first sample in the decoded record.
     record : (windows,) int
         Position of the record in the split.
     samples : int
         Samples of a window.
     lengths : tuple of (rows,) int
-        Samples of the decoded records of every row group.
+        Samples of the decoded records of every shard.
     labels : dict of str to (records, ...)
         `record_id`, `specimen_id`, `state_id`, `class_id`, `damaged_area_mm2`, and those that were asked for.
     window_labels : dict of str to (windows,)

@@ -1,8 +1,8 @@
 """One window with its labels as PyTorch takes it, and a user's change of it that any number of workers repeats.
 
-The decoded records of a row group: as taken or resampled to equal angle steps, from Parquet or from a cache.
+The decoded records of a shard: as taken or resampled to equal angle steps, from Parquet or from a cache.
 
-A cache holds one `.npy` file per row group, read through memory mapping; it is named by set, split and settings, and
+A cache holds one `.npy` file per shard, read through memory mapping; it is named by set, split and settings, and
 made as groups are first read, by any number of processes at once.
 """
 
@@ -32,8 +32,8 @@ Transform = Callable[[Sample, np.random.Generator], Any]
 
 
 @dataclass(frozen=True, slots=True)
-class RowGroupSignals:
-    """Reads the records of a split, row group by row group.
+class ShardSignals:
+    """Reads the records of a split, shard by shard.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class RowGroupSignals:
     cache: Path | None = None
 
     def read(self, number: int, rows: Iterable[int]) -> Mapping[int, Sequence[np.ndarray]]:
-        """Return the channels, each (samples,) float32, of the asked rows of a row group, by row."""
+        """Return the channels, each (samples,) float32, of the asked rows of a shard, by row."""
         if self.cache is None:
             return self._decoded(number, rows)
         lengths = self.index.lengths[number]

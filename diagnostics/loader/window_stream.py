@@ -5,7 +5,7 @@
         loss = step(batch["windows"], batch["state_id"])
         position = loader.state_dict()
 
-Records of one row group are decoded once; a random record would cost a whole row group each. Every iteration is the
+Records of one shard are decoded once; a random record would cost a whole shard each. Every iteration is the
 next epoch, through a `WindowLoader` or through torch's `DataLoader`.
 """
 
@@ -24,7 +24,7 @@ from torch.utils.data._utils.collate import default_collate_fn_map
 
 from diagnostics.loader.epoch_order import Lane, Shuffling, epoch_chunks, rank_windows
 from diagnostics.loader.window_index import StreamSettings, window_index
-from diagnostics.loader.window_sample import RowGroupSignals, Sample, Transform, transformed, window_sample
+from diagnostics.loader.window_sample import Sample, ShardSignals, Transform, transformed, window_sample
 from diagnostics.records.usable_records import of_quantity
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
@@ -111,7 +111,7 @@ class WindowStream(IterableDataset[Any]):  # type: ignore[misc]  # the type chec
         self.shuffling = shuffling or Shuffling()
         self.index = window_index(dataset, split, chosen, labels)
         self.transform = transform
-        self.signals = RowGroupSignals(dataset, split, dataset.shards(split), chosen, self.index, cache)
+        self.signals = ShardSignals(dataset, split, dataset.shards(split), chosen, self.index, cache)
         # how often each worker began an epoch; shared, since a DataLoader makes new copies of the stream every time
         self._begun = torch.zeros(MOST_WORKERS, dtype=torch.int64).share_memory_()
         self.position = Position()
@@ -248,7 +248,7 @@ class WindowLoader:
         return {
             "windows": stream.index.fingerprint(),
             "seed": stream.shuffling.seed,
-            "buffer_groups": stream.shuffling.buffer_groups,
+            "buffer_shards": stream.shuffling.buffer_shards,
             "batch": stream.batch,
             "rank": stream.shuffling.rank,
             "world_size": stream.shuffling.world_size,

@@ -145,7 +145,7 @@ DIAGNOSTICS = {
         "diagnostics.loader.WindowStream": "loader.window_stream",
         "diagnostics.loader.WindowLoader": "loader.window_stream",
         "diagnostics.loader.WindowDataset": "loader.window_dataset",
-        "diagnostics.loader.RowGroupSampler": "loader.window_dataset",
+        "diagnostics.loader.ShardSampler": "loader.window_dataset",
         "diagnostics.loader.StreamSettings": "loader.window_index",
         "diagnostics.loader.Shuffling": "loader.epoch_order",
     },

@@ -18,7 +18,7 @@ PHYSICS = "physics.json"
 INJECTED = "injected.json"
 """In a set of recordings with injected damage, as `siggen-diagnostics calibrate --inject` writes it."""
 BLIND = "blind.json"
-"""In a set without what tells its states, as `siggen-diagnostics bench make` writes it."""
+"""In a set without what tells its states, as `diagnostics.make_benchmark` writes it."""
 
 
 def read_manifest(storage: Storage) -> Inventory:

@@ -31,7 +31,7 @@ AREA_MM2 = {"healthy": 0.0, "slight": 1.0, "severe": 8.0}
 TEETH = (18, 47)
 FS_HZ = 12_800.0
 ROWS = 7
-"""Records of a row group: no divisor of the 36 of the training split, so that the last group is smaller."""
+"""Records of a shard: no divisor of the 36 of the training split, so that the last group is smaller."""
 
 CHANNELS = ("bearing_vertical", "bearing_horizontal")
 

@@ -62,7 +62,7 @@ Explore.draw = () => {
   const part = Explore.part;
   if (!detail) {
     part("overlay-note").hidden = false;
-    part("overlay-note").textContent = "This page does not hold the signal of this record. `siggen-diagnostics explore SET --limit` puts more on the page.";
+    part("overlay-note").textContent = "This page does not hold the signal of this record. `siggen-diagnostics explore SET --full` puts more on the page.";
     return void Explore.drawScatter();
   }
   const channel = Explore.channel();

@@ -11,7 +11,7 @@ import pyarrow as pa
 import pytest
 from torch.utils.data import DataLoader
 
-from diagnostics.loader import RowGroupSampler, Shuffling, StreamSettings, WindowDataset, WindowStream
+from diagnostics.loader import ShardSampler, Shuffling, StreamSettings, WindowDataset, WindowStream
 from siggen.errors import UsageError
 
 Found = list[tuple[int, bytes]]
@@ -76,7 +76,7 @@ def test_windows_by_number_are_those_of_the_stream_for_any_number_of_workers(dat
 
     def epochs(workers: int, **options: Any) -> list[Found]:
         own = WindowDataset(dataset, "train", transform=louder, **options)
-        loader = DataLoader(own, batch_size=16, sampler=RowGroupSampler(own), num_workers=workers)
+        loader = DataLoader(own, batch_size=16, sampler=ShardSampler(own), num_workers=workers)
         return [contents(loader) for _ in range(2)]
 
     one = epochs(0)
@@ -102,7 +102,7 @@ def test_a_transform_of_a_stream_draws_by_seed_epoch_and_window(dataset: Any, wo
 
 def test_ranks_of_the_sampler_share_the_windows(dataset: Any) -> None:
     windows = WindowDataset(dataset, "train")
-    ranks = [RowGroupSampler(windows, Shuffling(rank=rank, world_size=3)) for rank in range(3)]
+    ranks = [ShardSampler(windows, Shuffling(rank=rank, world_size=3)) for rank in range(3)]
     assert sorted(number for rank in ranks for number in rank) == list(range(len(windows)))
     assert [len(rank) for rank in ranks] == [72, 72, 72]
 
