@@ -22,8 +22,6 @@ PALMGREN = 4.4e-4
 """mm N^(-2/3) mm^(1/3), as `siggen.rig.bearings`."""
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(48)
 """On an angle t with ψ = ψ_0 sin t, over which the load vanishes smoothly: exact to rounding."""
-CHORDS, HALVINGS, EXACT = 30, 60, 1e-13
-"""Most chords and halvings on the way to a deflection, and what is left of F^(2/3); some six chords do from 1 N on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,33 +131,16 @@ class BallBearing:
         low = max(0.5 * self.clearance_m, 0.0) / cos(self.contact_angle_rad)
         if force_n == 0.0:
             return low
-        # F^(2/3) is nearly straight over the way: the chord's zero, its idle end at half its height (Dowell and Jarratt
-        # 1971). Under a light load rounding ends it: the bracket is halved then.
-        wanted = float(force_n ** (2.0 / 3.0))
-        closed, reach, high, above = low, 1e-6, low, -wanted
-        while above < 0.0:
-            low, below, high, reach = high, above, closed + reach, 2.0 * reach
-            above = self._root_force(high) - wanted
-        last = 0.0
-        for step in range(CHORDS + HALVINGS):
-            crossing = high - above * (high - low) / (above - below)
-            if step >= CHORDS or not low < crossing < high:
-                crossing = 0.5 * (low + high)
-            if crossing in (low, high):
-                break
-            left = self._root_force(crossing) - wanted
-            if abs(left) <= EXACT * wanted:
-                return crossing
-            if left < 0.0:
-                low, below, above = crossing, left, above * (0.5 if last < 0.0 else 1.0)
-            else:
-                high, above, below = crossing, left, below * (0.5 if last > 0.0 else 1.0)
-            last = left
-        return high
+        from scipy.optimize import brentq  # here: a tenth of a second that imports need not wait for
 
-    def _root_force(self, deflection_m: float) -> float:
-        """Return F^(2/3); rounding may take a force without load below 0."""
-        return float(max(self.force_n(deflection_m), 0.0) ** (2.0 / 3.0))
+        # F^(2/3) is nearly straight over the way, and below 0 by rounding alone.
+        def left(way_m: float) -> float:
+            return float(max(self.force_n(way_m), 0.0) ** (2.0 / 3.0) - force_n ** (2.0 / 3.0))
+
+        reach = 1e-6
+        while left(low + reach) < 0.0:
+            reach *= 2.0
+        return low if left(low) >= 0.0 else float(brentq(left, low, low + reach, xtol=1e-18, rtol=1e-15))
 
 
 # LoadedBearing: how stiff a ball bearing is under its load, and how far it moves as its balls pass.

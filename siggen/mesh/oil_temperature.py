@@ -19,8 +19,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import cos, pi
 
-from scipy.optimize import brentq
-
 from siggen.gears.gear_pair import GearPair
 from siggen.mesh.lubrication import relative_radius
 from siggen.mesh.oil import COLDEST_C, Oil
@@ -100,6 +98,8 @@ def sump_c(loss: Callable[[float], float], air_c: float, area_m2: float, warm_sh
     air_c, area_m2 : of the air around, and of the walls
     warm_share : of the rise that is there since the start
     """
+    from scipy.optimize import brentq  # here: a tenth of a second that imports need not wait for
+
     surplus_w = _surplus_w(loss, air_c, area_m2)
     if surplus_w(max(air_c, COLDEST_C)) <= 0.0:
         return air_c

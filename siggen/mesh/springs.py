@@ -334,12 +334,10 @@ def _tilted_spring(law: PairLaw, pair: PairPlace, tilt: float, approach_m: float
     radius = sqrt(approach_m * approach_m + lift * lift)
     if not (radius > LEAST_M and abs(lift) < HALF_RAYS[-1] * (radius + approach_m)):
         return Spring(0.0, 0.0, 0.0, penetration_m, 0.0, 0.0, 0.0, 1.0, 0.0)
-    place, way, half_face = (
-        _node_place(law, pair, radius),
-        (approach_m, lift, radius),
-        law.scalars[layout.CONTACT_HALF_FACE],
+    place, half_face = _node_place(law, pair, radius), law.scalars[layout.CONTACT_HALF_FACE]
+    force, stiffness, moment, cross, turning, carrying, rough = tilted_answer(
+        law.numbers, place, (approach_m, lift, radius), half_face
     )
-    force, stiffness, moment, cross, turning, carrying, rough = tilted_answer(law.numbers, place, way, half_face)
     return Spring(force, stiffness, stiffness, penetration_m, moment, cross, turning, carrying, rough)
 
 

@@ -9,7 +9,7 @@ in which a face that rests on one end, or touches as a whole, is the same functi
 few rays do. Along a ray W_r and W_p are monotone cubics between nodes and W is the integral of W_r; between rays W is
 the cubic of Hermite of W and W_p. Force and moment are derivatives of that one function: no closed loop does work.
 
-Shafts lift the ends of a face by little: below 1 um in the shipped presets, where the approach goes to 47 um. So up to
+Shafts lift the ends of a face by little: below 1 um in `quickstart`, where the approach goes to 47 um. So up to
 `NEAR` the energy follows from the face without tilt alone, to the second order in p,
 
     W(r, p) = W + p W_p + ½ p² W_pp,   W_p = 2 r M/h,   W_pp = 4 r (r T - F)  at p = 0,   T = dM/dθ / h²,

@@ -5,9 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from siggen.checks.loading import load_config
+from siggen.columns.record import SimulatedRecord
 from siggen.damage.outlines import rectangle
 from siggen.damage.part import Damage
 from siggen.damage.spalls import FlankSpall
+from siggen.gearbox.plan import record_ids_of
 from siggen.gears.missing_material import TipRelief, missing_material
 from siggen.mesh import pair_law as layout
 from siggen.mesh.contact_table import (
@@ -28,6 +31,7 @@ from siggen.mesh.stiffness_options import StiffnessOptions
 from siggen.mesh.table_options import TableOptions, face_slices
 from siggen.mesh.tilt_rays import RAYS
 from siggen.record.contact import whole_face
+from siggen.sets.drawn import simulated
 from tests.dynamics.pair_runs import RELIEF, gear_pair, law
 from tests.gears.contact.faces import force_curve
 from tests.gears.contact.test_contact_table import pitch_height, through_the_face
@@ -152,3 +156,31 @@ def test_the_outermost_rays_are_those_on_which_a_corner_just_touches() -> None:
     """There the ends' lift makes up for the gap: d = -|τ| in p = τ/(√(d² + τ²) + d)."""
     lift = np.array([-1.0, 1.0])
     np.testing.assert_allclose(RAYS[[0, -1]], lift / (np.sqrt(2.0) - 1.0), rtol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["quickstart", "helical"])
+def test_shafts_of_presets_lift_the_ends_of_a_face_by_less_than_rays_need(name: str) -> None:
+    design = load_config(name, ["duration_s=0.2", "internals={quantities: [mesh_tilt_rad]}"])
+    gearbox = design.gearbox(2)
+    (record,) = simulated(design, record_ids_of(design, 2)[-1:])
+    assert isinstance(record, SimulatedRecord)
+    lift = np.abs(record.internals["mesh_tilt_rad"]).max() * gearbox.pair.face_width_m / 2.0
+    assert 1e-8 < lift < 1e-6
+
+
+@pytest.mark.parametrize(("damage", "errors"), [((), (1e-3, 3e-3)), (one_end(), (4e-2, 0.1))], ids=["sound", "one end"])
+def test_lifts_of_8_and_15_um_err_by_what_methods_say(damage: Damage, errors: tuple[float, float]) -> None:
+    lead = np.zeros(face_slices(gear_pair(), OPTIONS))
+    table, chosen = made(damage, lead)
+    row, number = rows(damage)
+    solver = table_solver(gear_pair(), TEETH, OPTIONS, lead)
+    differs = np.flatnonzero((table.column[number] >= OPTIONS.healthy_columns) | (number == 0))
+    points = differs[(np.linspace(0.1, 0.9, 5) * (differs.size - 1)).astype(np.int64)]
+    touch, faces = first_touch(gear_pair(), row, points, lead), row_faces(solver, row, points)
+    for lift, allowed in zip((8e-6, 15e-6), errors, strict=True):
+        tilt = lift / table.half_face_m
+        where = np.array([(np.sqrt((20e-6) ** 2 - lift**2), sign * tilt) for sign in (1.0, -1.0)])
+        for point, touched, face in zip(points.tolist(), touch, faces, strict=True):
+            exact = solved(face, float(touched), where)[:, 0]
+            found = from_table(table, chosen, number, point, where)[:, 0]
+            assert np.max(np.abs(found / exact - 1.0)) < allowed
