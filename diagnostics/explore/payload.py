@@ -32,8 +32,8 @@ from diagnostics.signal.spectrum import envelope_spectrum
 from diagnostics.signal.synchronous_average import hann_weights, synchronous_average, whole_revolutions
 from siggen.dataset.reading import Dataset
 
-SMALL_BYTES = 3_900_000
-"""Signals of a page; with indicators, names and program it stays below 5 MB."""
+SMALL_BYTES = 1_600_000
+"""Signals of a page; with indicators, names, pictures and program a report stays below 3 MB."""
 
 FULL_BYTES = 27_000_000
 """The same for all samples, below 30 MB."""

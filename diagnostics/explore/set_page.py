@@ -28,7 +28,8 @@ from siggen.errors import UsageError
 RIGHT, WRONG = "rightly", "wrongly"
 SEEN, UNSEEN = "seen in training", "no"
 
-LIMIT = 100
+LIMIT = 40
+"""Of as many records of two channels the page holds signals of full detail below 3 MB."""
 COLUMNS = (
     *(("record_id", "Record"), ("state", "State"), ("damaged_area_mm2", "Area [mm²]"), ("speed_hz", "Speed [Hz]")),
     *(("torque_nm", "Load [N m]"), ("split", "Split"), ("specimen_id", "Gearbox")),

@@ -50,6 +50,8 @@ TRAP_WORD, TRAP = "trap", "something other than damage that tells the labels"
 SPACE = "\N{NO-BREAK SPACE}"
 SIZE_IN, ORDERS = (5.6, 1.0, 1.0), 4.6
 """Width, and height of the frame and of a row [in]; how far from the mesh line spectra are shown."""
+TITLE_SIGNS = 56
+"""Of a line above a row: longer ones are cut at the edge of the figure."""
 
 
 def first_figure(
@@ -85,7 +87,8 @@ def first_figure(
         axes = figure.subplots(len(shown), 1, squeeze=False, sharex=True, sharey=True)[:, 0]
         for axis, one in zip(axes, shown, strict=True):
             draw_spectrum(axis, one, examples, harmonic, colours[one.state])
-            axis.set_title(_row_title(one, areas, best), loc="left", fontweight="bold", color=colours[one.state])
+            title = textwrap.fill(_row_title(one, areas, best), TITLE_SIGNS)
+            axis.set_title(title, loc="left", fontweight="bold", color=colours[one.state])
         top = max(around(one, examples, harmonic)[1].max() for one in spectra)
         axes[0].set_ylim(2.0 * top / 10**DECADES_SHOWN, 4.0 * top)
         axes[0].set_xlim(-ORDERS, ORDERS)

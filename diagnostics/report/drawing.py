@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import siggen
 from diagnostics.indicators.matrix import FeatureMatrix
-from diagnostics.indicators.registry import mesh_words
 from diagnostics.judging.of_split import Training
 from diagnostics.page.blocks import RecordLinks
 from diagnostics.page.provenance import without_path
@@ -18,13 +17,10 @@ from diagnostics.page.style import (
     PASSING,
     SLANTED,
     draw_marks,
-    mark_handles,
     new_figure,
-    order_words,
     sideband_places,
     state_colours,
     state_ticks,
-    turn_words,
 )
 from diagnostics.page.tables import records_link, state_links
 from diagnostics.records.gear_train import GearMesh, meshes_of
@@ -108,25 +104,6 @@ def example_set(dataset: Dataset, channel: int = 0) -> ExampleSet:
     )
 
 
-def around_mesh(examples: ExampleSet, mesh: GearMesh) -> ExampleSet:
-    """Return examples with the teeth, the speed and the orders of a mesh's own driver."""
-    turns = float(mesh.turns)
-    shown = [
-        example
-        if example.spectrum is None
-        else replace(
-            example,
-            spectrum=replace(
-                example.spectrum,
-                order=example.spectrum.order / turns,
-                revolutions=max(1, int(example.spectrum.revolutions * turns)),
-            ),
-        )
-        for example in examples.examples
-    ]
-    return replace(examples, examples=tuple(shown), speed_hz=examples.speed_hz * turns, teeth=mesh.teeth, mesh=mesh)
-
-
 def _example(record: Recording, channel: str) -> Example:
     signal, tacho_s, teeth = record.channels[channel], record.tacho_s, record.teeth[0]
     spectrum = order_spectrum(signal, tacho_s, record.fs_hz, teeth) if len(tacho_s) > 1 else None
@@ -160,17 +137,12 @@ LOSSES = {
 }
 """What the labels of a set say about the loss of mesh stiffness, the better one first."""
 
-REVOLUTIONS_SHOWN = 2
 ORDERS_SHOWN = 7.0
 SIDEBANDS = 6
 DECADES_SHOWN = 5.0
-TALLEST_IN = 9.5
-"""A figure of half a page's width that is taller does not fit a sheet."""
 
 BEHIND_COLOUR, LOWEST = "#b9c4cd", 1e-12
 """Of the healthy record behind a damaged one, and where its area begins, below every figure."""
-
-FIRST_HARMONICS = (1, 2)
 
 
 def stiffness_figure(curves: Mapping[str, siggen.Curve], colours: dict[str, str]) -> Figure:
@@ -224,47 +196,6 @@ def stiffness_loss_figure(
     return figure
 
 
-def waveform_figure(examples: ExampleSet, colours: dict[str, str]) -> Figure:
-    """Return the signal over two turns of the first shaft, one row per state, all on one scale."""
-    rows = len(examples.examples)
-    figure, axes = new_figure(rows, 1, height_in=_height_in(0.7, 1.1, rows), sharex=True, sharey=True)
-    for axis, example in zip(axes[:, 0], examples.examples, strict=True):
-        start_s = example.tacho_s[0] if len(example.tacho_s) else 0.0
-        first = round(start_s * examples.fs_hz)
-        signal = example.signal[first : first + round(REVOLUTIONS_SHOWN / examples.turns_hz * examples.fs_hz)]
-        axis.plot(1e3 * np.arange(signal.size) / examples.fs_hz, signal, color=colours[example.state], linewidth=0.6)
-        axis.set_title(example.state, loc="left", fontweight="bold", color=colours[example.state])
-        for pulse in range(REVOLUTIONS_SHOWN + 1):
-            axis.axvline(1e3 * pulse / examples.turns_hz, color="#9aa7b2", linewidth=0.7, linestyle=":")
-    axes[-1, 0].set_xlabel("Time since a shaft pulse [ms]")
-    figure.supylabel(f"{examples.quantity.capitalize()} [{examples.unit}]", fontsize=10)
-    return figure
-
-
-def _height_in(frame: float, row: float, rows: int) -> float:
-    return min(frame + row * rows, max(TALLEST_IN, frame + 0.62 * rows))
-
-
-def spectrum_figure(examples: ExampleSet, colours: dict[str, str], harmonic: int) -> Figure:
-    """Return the order spectrum around one mesh harmonic, one row per state, the healthy state in grey behind."""
-    rows = len(examples.examples)
-    figure, axes = new_figure(rows, 1, height_in=_height_in(1.0, 1.25, rows), sharex=True, sharey=True)
-    top = max(
-        around(example.spectrum, examples, harmonic)[1].max() for example in examples.examples if example.spectrum
-    )
-    for axis, example in zip(axes[:, 0], examples.examples, strict=True):
-        draw_spectrum(axis, example, examples, harmonic, colours[example.state])
-        axis.set_title(example.state, loc="left", fontweight="bold", color=colours[example.state])
-    axes[0, 0].set_ylim(2.0 * top / 10**DECADES_SHOWN, 4.0 * top)
-    axes[0, 0].set_xlim(-ORDERS_SHOWN, ORDERS_SHOWN)
-    mesh_hz = harmonic * examples.teeth[0] * examples.turns_hz
-    words = f"{order_words(examples.mesh)} of {examples.turns_hz:.3g} Hz"
-    axes[-1, 0].set_xlabel(f"Offset from {mesh_hz:.0f} Hz [{words}]")
-    figure.supylabel(f"Amplitude [{examples.unit}]", fontsize=10)
-    add_legend(axes[0, 0], examples.mesh)
-    return figure
-
-
 def around(spectrum: OrderSpectrum, examples: ExampleSet, harmonic: int) -> tuple[np.ndarray, np.ndarray]:
     """Return offset from a mesh harmonic [orders] and amplitude, (n,) each."""
     centre = harmonic * examples.teeth[0]
@@ -287,27 +218,10 @@ def draw_spectrum(axis: Any, example: Example, examples: ExampleSet, harmonic: i
     draw_marks(axis, (offset, amplitude), places, 1.5 / example.spectrum.revolutions)
 
 
-def add_legend(axis: Any, mesh: GearMesh) -> None:
-    """Say above an axis what marks and colours mean."""
-    from matplotlib.lines import Line2D
-
-    handles = [*mark_handles(mesh), Line2D([], [], color=BEHIND_COLOUR, linewidth=6, label="healthy")]
-    axis.legend(
-        handles=handles,
-        loc="lower right",
-        bbox_to_anchor=(1.0, 1.0),
-        ncols=4,
-        fontsize=8,
-        borderpad=0.0,
-        columnspacing=1.0,
-    )
-
-
 @dataclass(slots=True)
 class Drawing:
     """Figures with captions by file name, by section of the report; notes on what is missing; links to records."""
 
-    vibration: dict[str, tuple[Figure, str]] = field(default_factory=dict)
     damage: dict[str, tuple[Figure, str]] = field(default_factory=dict)
     scores: dict[str, tuple[Figure, str]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
@@ -315,7 +229,7 @@ class Drawing:
 
     def figures(self) -> dict[str, tuple[Figure, str]]:
         """Return all figures by file name."""
-        return {**self.vibration, **self.damage, **self.scores}
+        return {**self.damage, **self.scores}
 
 
 def draw(
@@ -324,47 +238,14 @@ def draw(
     classes: tuple[str, ...],
     training: Training | None,
 ) -> Drawing:
-    """Draw what the report shows of signals, damage and scores; figures lead to records."""
+    """Draw what the report shows of damage and scores; figures lead to records, whose signals the page draws itself."""
     healthy = {state for state in classes if (matrix.labels["fault"][matrix.labels["state"] == state] == HEALTHY).all()}
     colours = state_colours(classes, healthy)
     drawing = Drawing()
-    _draw_vibration(drawing, dataset, colours)
     _draw_damage(drawing, dataset, classes, colours)
     if training:
         _draw_scores(drawing, training)
     return drawing
-
-
-def _draw_vibration(drawing: Drawing, dataset: Dataset, colours: dict[str, str]) -> None:
-    examples = example_set(dataset)
-    which = (
-        f"specimen {examples.specimen_id}, channel {examples.channel}, {examples.speed_hz:.3g}\u00a0Hz, "
-        f"{examples.torque_nm:.3g}\u00a0N\u00a0m"
-    )
-    figure = waveform_figure(examples, colours)
-    shown = {each.state: records_link(record=each.record_id) for each in examples.examples}
-    behind = RecordLinks("Records", shown)
-    drawing.behind["waveforms"] = behind
-    drawing.vibration["waveforms"] = (
-        figure,
-        f"Waveform in each state: {which}. Dotted: one {turn_words(examples.mesh)}.",
-    )
-    spectra = [example.spectrum for example in examples.examples if example.spectrum]
-    if not spectra:
-        drawing.notes.append(f"No order spectra: the example records hold no whole {turn_words(examples.mesh)}.")
-        return
-    for harmonic in sorted({*FIRST_HARMONICS, strongest(spectra[0], examples.mesh)}):
-        figure = spectrum_figure(examples, colours, harmonic)
-        window = f"Hann, {spectra[0].revolutions} x one {turn_words(examples.mesh)}"
-        caption = f"Order spectrum ({window}) around mesh harmonic {harmonic}: {which}."
-        drawing.vibration[f"spectrum_h{harmonic}"] = (figure, caption)
-        drawing.behind[f"spectrum_h{harmonic}"] = behind
-    for mesh in examples.train[1:]:
-        figure = spectrum_figure(around_mesh(examples, mesh), colours, 1)
-        window = f"Hann, {spectra[0].revolutions} revolutions of {examples.mesh.names.gears[0]}"
-        caption = f"Order spectrum ({window}) around mesh harmonic 1 of {mesh_words(mesh.names.name)}: {which}."
-        drawing.vibration[f"spectrum_h1_{mesh.names.name}"] = (figure, caption)
-        drawing.behind[f"spectrum_h1_{mesh.names.name}"] = behind
 
 
 def strongest(spectrum: OrderSpectrum, mesh: GearMesh) -> int:

@@ -16,7 +16,7 @@ from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.single_thread import single_thread
 from diagnostics.explore.look import Look
-from diagnostics.explore.set_page import LookOptions, set_look
+from diagnostics.explore.set_page import LIMIT, LookOptions, set_look
 from diagnostics.indicators.classifier_table import feature_matrix, table_settings, write_table
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.own_indicator import OwnIndicator
@@ -73,7 +73,7 @@ class PageOptions:
 
     predictions: Path | None = None
     states: Sequence[str] = ()
-    limit: int = 100
+    limit: int = LIMIT
     full: bool = False
     workers: int = 1
 

@@ -172,7 +172,6 @@ def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> 
         "Scores": [*_scores(training), grid(drawing.scores)],
         "Your predictions": your_scores(reported.yours),
         "Records named wrongly": _named(reported),
-        "Signals": [grid(drawing.vibration)],
         "Damage": [grid(drawing.damage)],
         "Definitions of the indicators": [definition_html({channel.quantity for channel in reported.dataset.channels})],
         "Notes": note_blocks(list(dict.fromkeys(notes))),

@@ -17,7 +17,7 @@ import pyarrow.compute as pc
 import pytest
 
 from diagnostics.explore.payload import BYTES_PER_POINT, page_detail
-from diagnostics.explore.set_page import LookOptions, predicted_labels, set_look, write_set_page
+from diagnostics.explore.set_page import LIMIT, LookOptions, predicted_labels, set_look, write_set_page
 from diagnostics.explore.set_source import chosen_records, overlaid_records
 from diagnostics.indicators.registry import columns, indicator_definitions, indicator_titles
 from diagnostics.indicators.settings import IndicatorSettings
@@ -188,10 +188,10 @@ def test_stored_quantities_that_no_sensor_sees_stand_at_their_records(tmp_path: 
 
 
 @pytest.mark.parametrize("channels", [1, 2, 8])
-@pytest.mark.parametrize(("full", "most"), [(False, 4.0e6), (True, 27.5e6)])
-def test_signals_of_a_hundred_records_fit(channels: int, full: bool, most: float) -> None:
-    detail = page_detail(100 * channels, 38_400, 81, full=full)
-    assert 100 * channels * detail.points(81) * BYTES_PER_POINT < most
+@pytest.mark.parametrize(("full", "most"), [(False, 1.65e6), (True, 27.5e6)])
+def test_signals_of_all_records_that_a_page_holds_fit(channels: int, full: bool, most: float) -> None:
+    detail = page_detail(LIMIT * channels, 38_400, 81, full=full)
+    assert LIMIT * channels * detail.points(81) * BYTES_PER_POINT < most
     assert detail.fine_samples > 200
 
 

@@ -122,7 +122,7 @@ def test_every_link_leads_to_a_place_on_the_page(folder: Path) -> None:
     places = re.findall(r' id="([^"]*)"', text)
     targets = {target for target in re.findall(r'href="#([^"]*)"', text) if "=" not in target}
     assert len(places) == len(set(places))
-    assert {"scores", "term-rms", "term-fm4"} <= targets <= set(places)
+    assert {"scores", "term-fm4"} <= targets <= set(places)
 
 
 def test_figures_and_tables_lead_to_the_records_behind_them(dataset: Any, folder: Path) -> None:
@@ -135,12 +135,10 @@ def test_figures_and_tables_lead_to_the_records_behind_them(dataset: Any, folder
     known = set(feature_columns(folder))
     shown = {one["indicator"][0] for one in asked if "indicator" in one}
     assert {name for name in shown if "__" in name} <= known
-    assert len(shown) > 100  # the table of all indicators
+    assert len(shown) >= 100  # the table of the best indicators
     first, *figures = re.findall(r"<figcaption.*?</figcaption>", text, re.DOTALL)
     assert "#state=severe" in first
     assert sum('href="#' in one for one in figures) >= len(figures) - 2  # all but permuted labels and all detectors
-    examples = next(one for one in figures if "Waveform in each state" in one)
-    assert len(re.findall(r"#record=\d+", examples)) == len(states)
 
 
 def feature_columns(folder: Path) -> list[str]:
@@ -150,15 +148,14 @@ def feature_columns(folder: Path) -> list[str]:
 def test_an_indicator_has_a_human_name_and_its_definition_on_hover(folder: Path) -> None:
     text = (folder / "report.html").read_text().replace("<wbr>", "")
     table = next(part for part in text.split("<table")[1:] if ">Indicator, channel<" in part)
-    assert '<a href="#term-rms">RMS</a> <small>bearing_vertical; rms</small>' in table
-    assert 'id="term-rms" data-hint="sqrt(mean x²); from record"' in text  # a script gives it to the links
+    assert '<a href="#term-fm4">FM4, pinion</a> <small>bearing_vertical; fm4_pinion</small>' in table
+    assert 'id="term-rms" data-hint="sqrt(mean x²); from record"' in text  # a script gives it to links
 
 
 def test_figures_tables_models_and_metrics_lie_beside_it(dataset: Any, folder: Path) -> None:
     written = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
     figures = (
-        "waveforms",
-        "spectrum_h1",
+        "first",
         "scores",
         "permuted",
         "stiffness_loss",
