@@ -24,8 +24,8 @@ class Shuffling:
     ----------
     seed : int or None
         None keeps the order of the files.
-    buffer_shards : int
-        Shards that are shuffled together.
+    buffer_windows : int
+        Windows of whole shards that are shuffled together, those of one shard more at most.
     rank, world_size : int
         Which of how many processes; each has an equal part of every epoch.
 
@@ -36,7 +36,7 @@ class Shuffling:
     """
 
     seed: int | None = 0
-    buffer_shards: int = 4
+    buffer_windows: int = 4096
     rank: int = 0
     world_size: int = 1
 
@@ -84,7 +84,7 @@ def epoch_chunks(group: np.ndarray, epoch: int, reader: Lane, batch: int, shuffl
     Returns
     -------
     list of (k,) int
-        Numbers of windows; a chunk needs `buffer_shards` shards at most.
+        Numbers of windows; those of a shard are in one chunk, which is decoded at once.
     """
     place = _group_places(int(group[-1]) + 1 if group.size else 0, epoch, shuffling)
     sequence = np.argsort(place[group], kind="stable")
@@ -92,7 +92,8 @@ def epoch_chunks(group: np.ndarray, epoch: int, reader: Lane, batch: int, shuffl
     ends = np.cumsum(lane_sizes(last - first, batch, reader.workers))
     start = int(ends[reader.worker - 1]) if reader.worker else 0
     lane = sequence[first + start : first + int(ends[reader.worker])]
-    buffer = place[group[lane]] // shuffling.buffer_shards
+    counts = np.bincount(place[group])
+    buffer = ((np.cumsum(counts) - counts) // shuffling.buffer_windows)[place[group[lane]]]
     chunks = np.split(lane, np.flatnonzero(np.diff(buffer)) + 1) if lane.size else []
     if shuffling.seed is None:
         return chunks

@@ -248,7 +248,7 @@ class WindowLoader:
         return {
             "windows": stream.index.fingerprint(),
             "seed": stream.shuffling.seed,
-            "buffer_shards": stream.shuffling.buffer_shards,
+            "buffer_windows": stream.shuffling.buffer_windows,
             "batch": stream.batch,
             "rank": stream.shuffling.rank,
             "world_size": stream.shuffling.world_size,

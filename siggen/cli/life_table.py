@@ -100,15 +100,14 @@ def cost_summary(cost: SetCost, summary: dict[str, Any], design: SetDesign) -> d
     """Return the CPU hours of a set, the share of its largest shard, and what the hours were worked out from."""
     from dataclasses import asdict
 
-    from siggen.gearbox.plan import SPLITS, specimen_count, specimens_per_shard
+    from siggen.gearbox.plan import largest_shard_share
 
     records = summary["records"]
     damaged = design.specimens * (design.state_count - 1)
     if summary["life"] is not None:
         damaged = round(records * summary["life"]["pitted_inspections"])
     hours = cost.hours(design.specimens, damaged, records, design.duration_s)
-    largest = min(specimens_per_shard(design), max(specimen_count(design, split) for split in SPLITS))
-    return {"cpu_hours": hours, "largest_shard": largest / design.specimens, **asdict(cost)}
+    return {"cpu_hours": hours, "largest_shard": largest_shard_share(design), **asdict(cost)}
 
 
 def cost_text(found: dict[str, Any]) -> str:

@@ -182,7 +182,7 @@ def plan_summary(design: SetDesign) -> dict[str, Any]:
         "severity_share": _severity_shares(config),
         "life": lives,
         "shards_of_split": {split: shard_count(design, split) for split in SPLITS},
-        "specimens_per_full_shard": specimens_per_shard(design),
+        "specimens_per_full_shard": specimens_per_shard(design, design.specimens),
         "raw_bytes": raw_bytes,
         "estimated_bytes_on_disk": estimated_bytes(design, records),
         **notes,

@@ -24,7 +24,11 @@ SUB_BLOCK = 5
 """Specimens among which splits are shuffled; small, so that a set cut off anywhere is still nearly balanced."""
 
 SHARD_BYTES = 16_000_000
-"""Aimed size of a full shard on disk."""
+"""Most bytes of a shard on disk, unless a gearbox alone has more."""
+
+SHARDS = 256
+"""Shards that gearboxes made at once are spread over, as far as they reach: work for as many workers, and little that
+a stop loses. A gearbox is never cut: its teeth, housing and tables are made once for all its records."""
 
 DISK_SHARE_PERCENT = 45
 """Assumed size on disk over raw size: 16-bit readings as float32, byte-split and compressed (measured 0.43 to 0.47)."""
@@ -191,7 +195,7 @@ def _even_sequence(wanted: Mapping[str, int]) -> tuple[str, ...]:
 
 
 def shards(design: SetDesign, split: str, earlier: Sequence[int] = ()) -> tuple[ShardPlan, ...]:
-    """Return the shards of a split; all are full but the last, so a larger set has the same full shards.
+    """Return the shards of a split, of as many gearboxes each but the last.
 
     Parameters
     ----------
@@ -202,9 +206,9 @@ def shards(design: SetDesign, split: str, earlier: Sequence[int] = ()) -> tuple[
         both sides of one, so that those of the smaller set stay as they are.
     """
     members = array("q", (i for i in range(design.specimens) if split_of(design, i) == split))
-    size = specimens_per_shard(design)
     groups: list[Sequence[int]] = []
     for first, end in pairwise((0, *earlier, design.specimens)):
+        size = specimens_per_shard(design, end - first)
         own = members[bisect_left(members, first) : bisect_left(members, end)]
         groups += [own[start : start + size] for start in range(0, len(own), size)]
     return tuple(
@@ -228,14 +232,20 @@ def specimen_count(design: SetDesign, split: str) -> int:
 
 
 def shard_count(design: SetDesign, split: str) -> int:
-    """Return the number of shards of a split without listing them."""
-    return -(-specimen_count(design, split) // specimens_per_shard(design))
+    """Return the number of shards of a split of a set that is made at once, without listing them."""
+    return -(-specimen_count(design, split) // specimens_per_shard(design, design.specimens))
 
 
-def specimens_per_shard(design: SetDesign) -> int:
-    """Return the number of specimens in a full shard, from the raw bytes of a specimen's signals."""
+def specimens_per_shard(design: SetDesign, stretch: int) -> int:
+    """Return the number of specimens in a full shard, from how many are made at once and the raw bytes of each."""
     specimen_bytes = _row_bytes(design) * len(design.channels) * design.records_per_specimen + _internal_bytes(design)
-    return max(1, SHARD_BYTES * 100 // (specimen_bytes * DISK_SHARE_PERCENT))
+    return max(1, min(stretch // SHARDS, SHARD_BYTES * 100 // (specimen_bytes * DISK_SHARE_PERCENT)))
+
+
+def largest_shard_share(design: SetDesign) -> float:
+    """Return which share of its gearboxes the largest shard of a set has, made at once: a worker makes it alone."""
+    most = max(specimen_count(design, split) for split in SPLITS)
+    return min(specimens_per_shard(design, design.specimens), most) / design.specimens
 
 
 def estimated_bytes(design: SetDesign, records: int) -> int:

@@ -44,7 +44,7 @@ def test_json_holds_what_the_configuration_describes(path):
     assert summary["mesh_hz"] == [540, 540]
     assert summary["severity_share"] == {"healthy": 0.5, "slight": 0.5}
     assert summary["raw_bytes"] == 200 * 51_200 * 4
-    assert summary["shards_of_split"] == {"train": 1, "validation": 1, "test": 1}
+    assert summary["shards_of_split"] == {"train": 60, "validation": 20, "test": 20}
 
 
 def test_records_of_states_and_splits_add_up_to_all():
@@ -144,11 +144,12 @@ def test_a_set_of_pairs_tells_them_and_the_mesh_frequencies_of_all(tmp_path):
 def test_more_workers_than_shards_make_a_set_no_faster_than_its_largest_shard() -> None:
     design = load_config("quickstart")
     counts = [shard.record_count for shard in planned_shards(design)]
+    assert counts == [5] * 24
     summary = {"records": sum(counts), "life": None}
     cost = cost_summary(SetCost(1.0, 1.0, 1.0, 1.0), summary, design)
     assert cost["largest_shard"] == max(counts) / sum(counts)
-    with patch("siggen.workers.choice.default_workers", lambda: 16):
+    with patch("siggen.workers.choice.default_workers", lambda: 48):
         said = cost_text({**cost, "cpu_hours": 10.0})
-    assert said.startswith("about 10 h of this processor, 5.83 h with 16 processes, as the largest shard is 58% of the")
-    with patch("siggen.workers.choice.default_workers", lambda: 1):
+    assert said.startswith("about 10 h of this processor, 25 min with 48 processes, as the largest shard is 4% of the")
+    with patch("siggen.workers.choice.default_workers", lambda: 16):
         assert "largest" not in cost_text(cost)

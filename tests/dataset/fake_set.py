@@ -21,7 +21,6 @@ import numpy as np
 import pyarrow as pa
 
 from siggen.columns.record import Column, RecordFailure, SimulatedRecord
-from siggen.gearbox import plan
 from siggen.gearbox.design import SetDesign, design_of
 from siggen.gearbox.plan import PlannedRecord, planned_record
 from siggen.sets import physics
@@ -227,11 +226,6 @@ def _pits(config: SetDesign, record_id: int) -> list[dict[str, object]]:
     return [{**ellipse, "record_id": record_id, "face_mm": 8.0 + pit} for pit in range(count)]
 
 
-def small_shards(size: int = 12_000) -> Any:
-    """Give every gearbox of the stand-in a shard of its own, unless told otherwise."""
-    return patch.object(plan, "SHARD_BYTES", size)
-
-
 @contextmanager
 def fake_physics(simulation: Any = simulate) -> Iterator[None]:
     """Put the stand-in where `generate` and `verify` look for the physics; workers receive its functions by name."""
@@ -252,7 +246,7 @@ def write_fake_set(
     allowed_loss: float = 1.0,
 ) -> Generation:
     """Generate a set with the stand-in, in this process unless workers are asked for; one gearbox per shard."""
-    with fake_physics(simulation), small_shards():
+    with fake_physics(simulation):
         told = {"events": events, "allowed_loss": allowed_loss}
         return generate(config or fake_config(), path, workers, part=part, executor=executor, **told)  # type: ignore[arg-type]
 

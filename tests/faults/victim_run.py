@@ -10,7 +10,6 @@ import argparse
 import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
-from unittest.mock import patch
 
 if TYPE_CHECKING:
     from siggen.gearbox.design import SetDesign
@@ -36,7 +35,6 @@ def default_model(specimens: int = SPECIMENS) -> SetDesign:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a step; return the exit code of a command."""
     from siggen.errors import SiggenError
-    from siggen.gearbox import plan
 
     given = _arguments(arguments)
     if given.memory_mb:
@@ -45,8 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # of address space, for this process and its workers: what `ulimit -v` sets
         resource.setrlimit(resource.RLIMIT_AS, (given.memory_mb << 20, resource.RLIM_INFINITY))
     try:
-        with patch.object(plan, "SHARD_BYTES", 1):
-            _run(given)
+        _run(given)
     except SiggenError as error:
         sys.stderr.write(f"{error}\n")
         return error.exit_code

@@ -111,10 +111,10 @@ def test_ten_million_records_are_planned_without_listing_them():
 
 
 @settings(max_examples=30)
-@given(st.integers(1, 400), st.sampled_from([0.5, 1.0, 10.0]))
+@given(st.integers(1, 1000), st.sampled_from([0.5, 1.0, 10.0]))
 def test_shards_hold_whole_specimens_of_a_split_in_order(specimens, duration_s):
     made = design(specimens=specimens, duration_s=duration_s, repeats=3)
-    per_shard = specimens_per_shard(made)
+    per_shard = specimens_per_shard(made, specimens)
     seen: list[int] = []
     for split in SPLITS:
         found = shards(made, split)
@@ -132,16 +132,21 @@ def test_shards_hold_whole_specimens_of_a_split_in_order(specimens, duration_s):
     assert sorted(seen) == list(range(len(plan(made))))
 
 
-def test_a_larger_set_has_the_same_full_shards():
-    small, large = design(specimens=300, duration_s=10.0), design(specimens=1000, duration_s=10.0)
+def test_a_set_has_a_shard_of_each_gearbox_or_256_and_more_of_16_mb_at_most():
+    counts = [sum(shard_count(design(specimens=n), split) for split in SPLITS) for n in (1, 24, 256, 511)]
+    assert counts == [1, 24, 256, 511]
+    assert specimens_per_shard(design(duration_s=10.0), 10**7) == specimens_per_shard(design(duration_s=10.0), 10**6)
+    assert specimens_per_shard(design(duration_s=1000.0), 10**6) == 1
+
+
+def test_shards_follow_from_what_is_made_at_once_and_an_extension_leaves_those_that_are_there():
+    small, large = design(specimens=600), design(specimens=3000)
     for split in SPLITS:
-        full = shards(small, split)[:-1]
-        assert full
-        assert shards(large, split)[: len(full)] == full
-
-
-def test_a_specimen_larger_than_a_shard_is_a_shard():
-    assert specimens_per_shard(design(duration_s=1000.0)) == 1
+        before = shards(small, split)
+        assert {len(one.specimens) for one in before[:-1]} == {2}
+        grown = shards(large, split, (600,))
+        assert grown[: len(before)] == before
+        assert {len(one.specimens) for one in grown[len(before) : -1]} == {2400 // 256}
 
 
 @pytest.mark.parametrize("specimens", [1, 7, 20, 39, 100, 401])

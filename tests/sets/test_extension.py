@@ -15,6 +15,7 @@ from siggen.cli.app import app
 from siggen.dataset.environment import environment
 from siggen.dataset.reading import open as open_set
 from siggen.errors import EXIT_MISMATCH, DatasetError, EngineError
+from siggen.gearbox import plan
 from siggen.sets.generation import generate
 from siggen.sets.set_run import Generation
 from tests.dataset.fake_set import (
@@ -22,14 +23,13 @@ from tests.dataset.fake_set import (
     fake_physics,
     file_bytes,
     simulate,
-    small_shards,
     verify_fake_set,
 )
 
 
 def write(path: Path, specimens: int, simulation: Any = simulate, workers: int = 0) -> Generation:
     """Generate with the stand-in; two gearboxes per full shard, so that sets end in partial ones."""
-    with fake_physics(simulation), small_shards(30_000):
+    with fake_physics(simulation), patch.object(plan, "SHARDS", 3):
         return generate(fake_config(specimens=specimens), path, workers)
 
 
@@ -113,7 +113,7 @@ def test_the_set_stays_readable_while_it_grows_and_the_same_call_continues(
 
 def test_verify_of_a_set_that_grows_says_how_to_end_the_extension(seven: Path, tmp_path: Path) -> None:
     folder = Path(shutil.copytree(seven, tmp_path / "set"))
-    with fake_physics(), small_shards(30_000):
+    with fake_physics(), patch.object(plan, "SHARDS", 3):
         for number in (1, 2, 3, 4):
             generate(fake_config(specimens=13), folder, 0, part=(number, 4))
     said = CliRunner().invoke(app, ["verify", str(folder)])

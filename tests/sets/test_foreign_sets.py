@@ -15,7 +15,7 @@ from siggen.dataset.seal import sealed, unsealed
 from siggen.errors import DatasetError
 from siggen.publication.publish import publish
 from siggen.sets.verification import verify
-from tests.dataset.fake_set import copy_fake_set, fake_physics, small_shards, write_fake_set
+from tests.dataset.fake_set import copy_fake_set, fake_physics, write_fake_set
 from tests.dataset.resealed_set import facts, reseal
 from tests.faults.foreign_sets import outcome_rows, readers
 from tests.publication.conftest import facts_file
@@ -39,7 +39,7 @@ def resealed(folder: Path, change: Callable[[dict], object]) -> None:
 
 def test_no_reader_ends_raw_writes_elsewhere_or_shows_what_lies_beside_the_set(tmp_path: Path, folder: Path) -> None:
     asked = {name: reader for name, reader in readers(folder).items() if name in QUICK_READERS}
-    with fake_physics(), small_shards():
+    with fake_physics():
         rows = list(outcome_rows(tmp_path / "place", folder, asked, CHANGES))
     assert len(rows) == len(QUICK_READERS)
     assert [(row.what, row.alternative) for row in rows if not row.met] == []

@@ -126,8 +126,7 @@ def test_an_interrupted_call_raises_and_continues(tmp_path: Path, reference: dic
         if done >= 8:
             signal.raise_signal(signal.SIGINT)
 
-    # shards of the usual size hold a whole split
-    with fake_physics(), pytest.raises(InterruptionError, match="1 of 3 shards"):
+    with fake_physics(), pytest.raises(InterruptionError, match="2 of 5 shards"):
         generate(fake_config(), tmp_path, 0, interrupt)
     write_fake_set(tmp_path)
     assert_complete(tmp_path, reference)

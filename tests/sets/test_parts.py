@@ -17,7 +17,6 @@ from tests.dataset.fake_set import (
     file_bytes,
     simulate_with_a_bug,
     simulate_with_failures,
-    small_shards,
     write_fake_set,
 )
 
@@ -38,7 +37,7 @@ def test_parts_in_any_order_and_a_call_without_give_the_bytes_of_a_set_made_at_o
 def test_parts_write_at_the_same_time_and_folders_of_parts_are_copied_together(tmp_path: Path) -> None:
     copy_fake_set(tmp_path / "at_once")
     # threads see signals no more than jobs do; in each of them the stand-in would stay when the other one ends first
-    with fake_physics(), small_shards(), ThreadPoolExecutor(2) as both:
+    with fake_physics(), ThreadPoolExecutor(2) as both:
         list(both.map(lambda number: generate(fake_config(), tmp_path / "set", 0, part=(number, 2)), (1, 2)))
     write_fake_set(tmp_path / "set")
     assert file_bytes(tmp_path / "set") == file_bytes(tmp_path / "at_once")

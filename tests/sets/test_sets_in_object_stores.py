@@ -25,7 +25,6 @@ from tests.dataset.fake_set import (
     file_bytes,
     simulate,
     simulate_with_a_bug,
-    small_shards,
     write_fake_set,
 )
 from tests.dataset.s3_server import BUCKET, digests, object_bytes, s3_server
@@ -41,7 +40,7 @@ def served(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 def write(place: str, simulation=simulate, **changes):
-    with fake_physics(simulation), small_shards():
+    with fake_physics(simulation):
         return generate(fake_config(**changes), place, 0)
 
 

@@ -27,7 +27,6 @@ from tests.dataset.fake_set import (
     fake_physics,
     file_bytes,
     simulate,
-    small_shards,
     verify_fake_set,
     write_fake_set,
 )
@@ -102,7 +101,7 @@ def test_the_printed_commands_repair_a_set(folder: Path, reference: Path, name: 
             for removed in words[1:]:
                 Path(removed).unlink()
         elif words[:2] == ["siggen", "generate"]:
-            with fake_physics(), small_shards():
+            with fake_physics():
                 made = CliRunner().invoke(app, [*words[1:], "--workers", "0"])
             assert made.exit_code == 0, made.stderr
     assert CliRunner().invoke(app, ["verify", str(folder), "--sample", "0"]).exit_code == 0

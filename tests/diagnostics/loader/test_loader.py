@@ -39,7 +39,7 @@ def loader(dataset: Any, workers: int = 0, **options: Any) -> WindowLoader:
     workers=st.integers(1, 4),
     batch=st.integers(1, 7),
     epoch=st.integers(0, 3),
-    buffer_shards=st.integers(1, 3),
+    buffer_windows=st.integers(1, 30),
     seed=st.none() | st.integers(0, 5),
 )
 def test_parts_share_the_windows_without_gap_or_double(
@@ -48,15 +48,17 @@ def test_parts_share_the_windows_without_gap_or_double(
     workers: int,
     batch: int,
     epoch: int,
-    buffer_shards: int,
+    buffer_windows: int,
     seed: int | None,
 ) -> None:
     group = np.repeat(np.arange(len(counts)), counts)
     found = []
     for rank in range(world_size):
-        shuffling = Shuffling(seed, buffer_shards, rank, world_size)
+        shuffling = Shuffling(seed, buffer_windows, rank, world_size)
         lanes = [epoch_chunks(group, epoch, Lane(worker, workers), batch, shuffling) for worker in range(workers)]
-        assert all(np.unique(group[chunk]).size <= buffer_shards for lane in lanes for chunk in lane)
+        chunks = [chunk for lane in lanes for chunk in lane]
+        assert all(chunk.size < buffer_windows + max(counts) for chunk in chunks)
+        assert all(np.unique(group[chunk]).size <= buffer_windows for chunk in chunks)
         found.append([np.concatenate([*lane, np.empty(0, dtype=int)]) for lane in lanes])
     assert sorted(np.concatenate([*itertools.chain(*found)]).tolist()) == list(range(group.size))
     sizes = [sum(lane.size for lane in lanes) for lanes in found]
