@@ -25,7 +25,8 @@ from diagnostics.records.recording import names_of, pair_teeth
 from diagnostics.statistics.evaluation import Interval
 from diagnostics.training.splits import TEST, SpecimenSplit
 from siggen.dataset.reading import Dataset
-from siggen.errors import UsageError
+from siggen.dataset.seal import digest_of, sealed, unsealed
+from siggen.errors import UsageError, VerificationError
 from siggen.file_writing import write_file
 
 REFERENCED = "referenced_"
@@ -38,32 +39,8 @@ MODEL_FILES = (
 )
 """All files of a model beside `model.json`, those that not every training writes among them."""
 
-DIGEST = "digest"
-
 FORMAT = "siggen-diagnostics model 7"
 """The only one that is read: earlier ones do not say what gears and meshes are called."""
-
-
-def sealed_text(content: Mapping[str, Any]) -> str:
-    """Return JSON that carries the SHA-256 of itself, so that any changed byte shows."""
-    return _text({**content, DIGEST: hashlib.sha256(_text(content).encode()).hexdigest()})
-
-
-def unsealed_text(text: str) -> dict[str, Any]:
-    """Return the content of sealed JSON.
-
-    Raises
-    ------
-    ValueError
-        If it is no JSON object, or not what its digest promises.
-    """
-    found = json.loads(text)
-    if not isinstance(found, dict):
-        raise ValueError(f"received {type(found).__name__} instead of an object")
-    digest = found.pop(DIGEST, None)
-    if sealed_text(found) != text:
-        raise ValueError(f"it was changed: its content does not match its own digest {digest}")
-    return found
 
 
 def file_hashes(folder: Path) -> dict[str, str]:
@@ -91,10 +68,6 @@ def check_files(folder: Path, hashes: Mapping[str, str]) -> None:
 def _sha256(path: Path) -> str:
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def _text(content: Mapping[str, Any]) -> str:
-    return json.dumps(dict(content), indent=1, allow_nan=False) + "\n"
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,12 +122,6 @@ class ModelFacts:
         return self.names[0].gears[0]
 
 
-def manifest_digest(manifest: dict[str, Any]) -> str:
-    """Return the SHA-256 of a manifest's content, the `digest` that `manifest.json` carries."""
-    content = json.dumps(manifest, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
-    return hashlib.sha256(content.encode()).hexdigest()
-
-
 def model_facts(dataset: Dataset, table: pa.Table, split: SpecimenSplit) -> ModelFacts:
     """Return the facts of models trained on a set; ranges are those of its training and validation records.
 
@@ -179,7 +146,7 @@ def model_facts(dataset: Dataset, table: pa.Table, split: SpecimenSplit) -> Mode
     return ModelFacts(
         set_name=str(dataset.manifest.get("name", dataset.path.name)),
         identity=str(dataset.manifest["identity"]),
-        manifest_digest=manifest_digest(dataset.manifest),
+        manifest_digest=digest_of(dataset.manifest),
         class_kind=split.kind,
         classes=split.classes,
         channels=tuple(channel.name for channel in dataset.channels),
@@ -210,7 +177,7 @@ def write_facts(
         "referenced_distance": distance_facts(referenced) if referenced else None,
         "files": file_hashes(folder),
     }
-    write_file(folder / FACTS_FILE, sealed_text(content))
+    write_file(folder / FACTS_FILE, sealed(content))
 
 
 def read_facts(folder: Path) -> tuple[ModelFacts, TrainingDistance, TrainingDistance | None]:
@@ -235,7 +202,7 @@ def read_facts(folder: Path) -> tuple[ModelFacts, TrainingDistance, TrainingDist
         )
     except UsageError:
         raise
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, VerificationError) as error:
         raise _unusable(path, error) from error
 
 
@@ -253,7 +220,7 @@ def read_accuracy(folder: Path) -> dict[str, Interval]:
         return {name: _interval(score["accuracy"]) for name, score in tested.items()}
     except UsageError:
         raise
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, VerificationError) as error:
         raise _unusable(path, error) from error
 
 
@@ -270,21 +237,21 @@ def read_hashes(folder: Path) -> dict[str, str]:
         return dict(_content(path)["files"])
     except UsageError:
         raise
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, VerificationError) as error:
         raise _unusable(path, error) from error
 
 
 def _content(path: Path) -> dict[str, Any]:
     """Return what `model.json` says, if it is whole and of a format that is read."""
-    text = path.read_text(encoding="utf-8")
-    content: dict[str, Any] = json.loads(text)
+    stored = path.read_bytes()
+    content: dict[str, Any] = json.loads(stored)
     found = content.get("format")
     if found != FORMAT:
         raise UsageError(
             f"{path}: received format {found!r}; allowed is {FORMAT!r}, which says what gears and meshes are "
             f"called. Train again: siggen-diagnostics report SET --out {path.parent}"
         )
-    return unsealed_text(text)
+    return unsealed(FACTS_FILE, stored)
 
 
 def _interval(numbers: dict[str, float | None]) -> Interval:

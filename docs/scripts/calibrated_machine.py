@@ -54,7 +54,7 @@ def before_and_after(folder: Path, seed: int) -> tuple[Likeness, Likeness]:
     """Return how gearboxes of the rig and of the calibrated configuration lie against the recordings that judge."""
     blocks = recordings(folder, seed)
     rig, mine = folder / "rig.yaml", folder / "mine.yaml"
-    rig.write_text(rig_text(Rig(TEETH, 3.0, 20.0, (33.0, 36.0), (20.0, 50.0)), "rig", "bench"), encoding="utf-8")
+    rig.write_text(rig_text(Rig(TEETH, 3.0, 20.0, (33.0, 36.0), (20.0, 50.0)), "rig"), encoding="utf-8")
     fitted = HealthyBlocks(blocks.blocks[:FITTED], blocks.channels, blocks.fs_hz)
     found = calibrated(read_rig(rig), fitted, None, GEARBOXES, PATHS, 0, lambda: None)
     write_calibration(found, mine)

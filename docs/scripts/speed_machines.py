@@ -70,7 +70,7 @@ def machine(index: int) -> tuple[dict[str, Any], tuple[int, int]]:
     module = str(MODULES_MM[index % len(MODULES_MM)])
     rig, _ = rig_of({"teeth": f"{teeth[0]},{teeth[1]}", "module": module, "speed": str(speed_hz)})
     rig = replace(rig, accuracy_classes=covering_classes(rig))
-    raw = inherited(parse_yaml(rig_text(rig, "rig", "bench"), "rig"))
+    raw = inherited(parse_yaml(rig_text(rig, "rig"), "rig"))
     torque_nm, seed = rig.torque_nm[1] * float(rng.uniform(0.3, 1.0)), int(rng.integers(1 << 30))
     drift = float(np.exp(rng.uniform(*np.log(DRIFTS))) * rng.choice([-1.0, 1.0]))
     speed = {"start_ratio": 1.0 - 0.5 * drift, "end_ratio": 1.0 + 0.5 * drift}

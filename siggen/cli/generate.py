@@ -65,14 +65,14 @@ def generate(
 
     loaded = load_config(config, overrides or ())
     chosen = None if part is None else part_of(part)
-    workers = workers_of(who.executor, who.workers, who.address).count
+    workers = workers_of(who.executor, who.workers).count
     with run_shown(log_json, out) as shown:
         for sentence in implausible(loaded.possible):
             shown.say(f"implausible: {sentence}")
         if text := compilation_text(loaded.method, workers):
             shown.say(text)
         told: dict[str, Any] = {"events": shown.events, "allowed_loss": who.allowed_loss}
-        on: dict[str, Any] = {"part": chosen, "executor": who.executor, "address": who.address}
+        on: dict[str, Any] = {"part": chosen, "executor": who.executor}
         generation = generate_set(loaded, out, who.workers, shown.progress, **on, **told)
     report(generation, "the set" if chosen is None else "part {} of {}".format(*chosen), shown.say)
     echo(str(generation.path))

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from siggen.cli.echo import echo
+from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 
 
@@ -36,14 +37,6 @@ class MachineOptions:
             help="On the pinion: one, or lowest,highest; where it is not given, what the gears are rated for.",
         ),
     ] = ""
-    bores: Annotated[
-        str,
-        typer.Option(
-            "--bores",
-            metavar="MM,MM",
-            help="Shaft diameters of pinion and gear; else for what the gears are rated for.",
-        ),
-    ] = ""
     fs: Annotated[
         str, typer.Option("--fs", metavar="HZ", help="Sampling rate of your recordings; else ten mesh harmonics'.")
     ] = ""
@@ -63,14 +56,14 @@ def init(
         str, typer.Option("--damage", metavar="KIND", help="spalls: one that grows; pits: a cluster that grows.")
     ] = "spalls",
     severities: Annotated[int, typer.Option("--severities", metavar="N", help="Sizes of damage, 1 to 12.")] = 3,
-    base: Annotated[str, typer.Option("--extends", help="Preset that gives everything else.")] = "bench",
+    as_json: AsJson = False,
 ) -> None:
     """Write a short configuration of your own gearbox; at a terminal it asks for what is missing.
 
     Shafts and bearings are of catalogue sizes for what the gears are rated for, the accuracy of the flanks lets the
     whole face carry; masses follow from the gears, sampling rate and duration from mesh and hunting period, damage from
-    the module. The rest comes from a preset. `siggen plan` then tries the machine. Editors complete keys by the file
-    siggen.schema.json, which is written beside it.
+    the module. The rest comes from the preset bench. `siggen plan` then tries the machine. Editors complete keys by
+    the file siggen.schema.json, which is written beside it.
 
     Example: siggen init --teeth 25,56 --module 2 --speed 1450rpm --out rig.yaml
     """
@@ -93,13 +86,17 @@ def init(
         answers[option] = str(typer.prompt(QUESTIONS[option]))
     rig, proposals = rig_of(answers, sensors, damage=damage, severities=severities)
     rig = replace(rig, accuracy_classes=covering_classes(rig))
-    text = rig_text(rig, _name(out), base, proposals)
+    text = rig_text(rig, _name(out), proposals)
     design = load_config(parse_yaml(text, str(out)))  # what is refused is never written
     write_file(out.with_name(SCHEMA_FILE), schema_text())
     write_file(out, text)  # last: once it is there, this command refuses
+    doubts = [*implausible(design.possible)]
+    if as_json:
+        echo_json({"path": str(out), "proposed": proposals, "implausible": doubts})
+        return
     for option, sentence in proposals.items():
         echo(f"--{option} was not given; proposed: {sentence}", err=True)
-    for sentence in implausible(design.possible):
+    for sentence in doubts:
         echo(f"implausible: {sentence}", err=True)
     echo(f"next: siggen plan {out} (tries it: which records would be lost); siggen generate {out} ...", err=True)
     echo(str(out))

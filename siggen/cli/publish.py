@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from siggen.cli.echo import echo
+from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.working import working
 
 
@@ -21,10 +22,7 @@ def publish(
     audit: Annotated[
         Path | None, typer.Option("--audit", help="Folder of the audit to quote. Default: DIR_audit, if it is there.")
     ] = None,
-    with_recordings: Annotated[
-        bool,
-        typer.Option("--with-recordings", help="Publish a set whose paths and lines were fitted to your recordings."),
-    ] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Make a folder for the Hugging Face hub and Zenodo; the set itself is not touched, nothing is uploaded.
 
@@ -39,7 +37,12 @@ def publish(
     from siggen.publication.publish import publish as publish_set
 
     with working("reading the set", compiles=False):
-        made = publish_set(folder, to, facts, audit, with_recordings=with_recordings)
+        made = publish_set(folder, to, facts, audit)
+    if as_json:
+        made_now = {name: len(content) for name, content in made.texts.items()}
+        audit_name = None if made.audit is None else str(made.audit)
+        echo_json({"path": str(to), "copied": made.copied, "bytes": made.bytes, "made": made_now, "audit": audit_name})
+        return
     echo(f"{counted(len(made.copied), 'file')} of the set, {made.bytes / 1e6:.1f} MB, unchanged", err=True)
     for name, content in made.texts.items():
         echo(f"{name}: {len(content)} bytes, made for publication", err=True)

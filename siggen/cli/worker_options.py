@@ -1,4 +1,4 @@
-"""Options of a command that simulates: who runs the work, on which cluster, and how many records may be lost."""
+"""Options of a command that simulates: who runs the work, and how many records may be lost."""
 
 from __future__ import annotations
 
@@ -20,12 +20,6 @@ class WorkerOptions:
         str | None,
         typer.Option(
             "--executor", help="Who runs the work: serial, processes (the default), dask or ray.", metavar="NAME"
-        ),
-    ] = None
-    address: Annotated[
-        str | None,
-        typer.Option(
-            "--address", help="A cluster that is there, for dask or ray; by default one is made on this machine."
         ),
     ] = None
     allowed_loss: Annotated[

@@ -11,14 +11,15 @@ import yaml
 from siggen.dataset.environment import environment, fingerprint, version_text
 from siggen.dataset.gate import manifest_facts
 from siggen.dataset.inventory import Inventory
-from siggen.dataset.manifest import CONFIG, MANIFEST
-from siggen.dataset.object_name import DATA_FOLDER, SPLITS
+from siggen.dataset.manifest import CARD, CONFIG, MANIFEST
+from siggen.dataset.object_name import DAMAGE, DATA_FOLDER, LABELS, SPLITS
 from siggen.dataset.shard import about_of, unpacked
 from siggen.dataset.storage import Storage
 from siggen.errors import ConfigError, DatasetError, VerificationError
 from siggen.gearbox.design import SetDesign, design_of
 
 NAMED_DIFFERENCES = 5
+OF_EVERY_SET = (CONFIG, CARD, LABELS, DAMAGE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,10 +32,13 @@ class FolderContent:
         Numbers of gearboxes at which the set was finished before: its shards never reach over one.
     finished
         The manifest of the whole set, with every file that it names.
+    published
+        Files that its manifest names and no run makes.
     """
 
     earlier: tuple[int, ...] = ()
     finished: Inventory | None = None
+    published: tuple[str, ...] = ()
 
 
 def content_of(storage: Storage, design: SetDesign) -> FolderContent:
@@ -69,7 +73,8 @@ def content_of(storage: Storage, design: SetDesign) -> FolderContent:
             "shards of two versions are never mixed. Go on with the version and the kind of processor that made it, or "
             f"make a new set: siggen generate {storage.location}/{CONFIG} --set specimens={design.specimens} --out NEW"
         )
-    return FolderContent(tuple(count for count in manifest.extensions if count < design.specimens))
+    published = tuple(name for name in manifest.files if "/" not in name and name not in OF_EVERY_SET)
+    return FolderContent(tuple(count for count in manifest.extensions if count < design.specimens), None, published)
 
 
 def _manifest(storage: Storage) -> Inventory | None:

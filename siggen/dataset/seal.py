@@ -1,4 +1,4 @@
-"""JSON that carries the SHA-256 of itself: the manifest of a set, and what was found of its precision."""
+"""JSON that carries the SHA-256 of itself: the manifest of a set, its precision, what a model says of itself."""
 
 from __future__ import annotations
 
@@ -26,15 +26,22 @@ def json_bytes(content: Mapping[str, object]) -> bytes:
 
 def sealed(content: Mapping[str, Any]) -> bytes:
     """Return JSON that carries the SHA-256 of itself, so that any changed byte shows."""
+    return json_bytes({**content, DIGEST: digest_of(content)})
+
+
+def digest_of(content: Mapping[str, Any]) -> str:
+    """Return the digest with which a content is sealed."""
     digest = hashlib.sha256()
     for piece in _pieces(content):
         digest.update(piece)
-    return json_bytes({**content, DIGEST: digest.hexdigest()})
+    return digest.hexdigest()
 
 
 def _pieces(content: Mapping[str, object]) -> Iterator[bytes]:
     """Yield the JSON in pieces: a manifest has one text per number, far more memory than their bytes."""
-    texts = json.JSONEncoder(indent=1, sort_keys=True, ensure_ascii=False, default=_listed).iterencode(content)
+    texts = json.JSONEncoder(indent=1, sort_keys=True, ensure_ascii=False, allow_nan=False, default=_listed).iterencode(
+        content
+    )
     while piece := "".join(islice(texts, TEXTS_PER_PIECE)):
         yield piece.encode()
     yield b"\n"

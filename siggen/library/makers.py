@@ -83,7 +83,7 @@ def single_stage(
         torque = finite("rated_nm", torque, f"above 0 up to {most:.4g} N m, which the teeth bear", 1e-9, most)
         rig = Rig(pair, module, width, (speed, speed), (torque, torque), pressure_angle_deg=angle)
         rig = replace(rig, accuracy_classes=covering_classes(checked_rig(rig)))
-        raw = parse_yaml(rig_text(rig, "single_stage", "bench"), "single_stage")
+        raw = parse_yaml(rig_text(rig, "single_stage"), "single_stage")
         return made({**raw, "states": {"others": None, "healthy": {}}}, number)
 
 

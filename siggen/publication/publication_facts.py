@@ -22,6 +22,7 @@ published: unset             # date, such as 2026-11-30
 publisher: unset             # who keeps it: Zenodo, Hugging Face, your institute
 url: unset                   # where it will be: https://...
 doi: null                    # if it has one already, such as 10.5281/zenodo.1234567
+with_recordings: false       # true: paths and lines that were fitted to your recordings may be published
 citation: unset              # as others shall cite it, one text
 authors:
   - name: unset              # Family, Given
@@ -29,6 +30,7 @@ authors:
     orcid: null              # such as 0000-0002-1825-0097
 """
 NEEDED = ("license", "title", "version", "published", "publisher", "url", "citation")
+OPTIONAL = ("doi", "with_recordings")
 DOI = re.compile(r"10\.\d{4,9}/\S+")
 ORCID = re.compile(r"\d{4}-\d{4}-\d{4}-\d{3}[\dX]")
 
@@ -44,7 +46,10 @@ class Author:
 
 @dataclass(frozen=True, slots=True)
 class PublicationFacts:
-    """What the authors say; `license` is an SPDX identifier, `published` a date as YYYY-MM-DD."""
+    """What the authors say; `license` is an SPDX identifier, `published` a date as YYYY-MM-DD.
+
+    `with_recordings` allows numbers that come from recordings: a family of paths, a table of lines.
+    """
 
     license: str
     title: str
@@ -55,6 +60,7 @@ class PublicationFacts:
     citation: str
     authors: tuple[Author, ...]
     doi: str | None = None
+    with_recordings: bool = False
 
     @property
     def year(self) -> int:
@@ -77,11 +83,12 @@ def read_publication_facts(path: Path) -> PublicationFacts:
     if problems:
         raise ConfigError(problems, str(path))
     authors = tuple(Author(**author) for author in raw["authors"])
-    return PublicationFacts(authors=authors, doi=raw.get("doi"), **{name: raw[name] for name in NEEDED})
+    optional = {name: raw[name] for name in OPTIONAL if name in raw}
+    return PublicationFacts(authors=authors, **optional, **{name: raw[name] for name in NEEDED})
 
 
 def _unknown(raw: Mapping[str, Any]) -> list[Problem]:
-    known = (*NEEDED, "doi", "authors")
+    known = (*NEEDED, *OPTIONAL, "authors")
     return [Problem(str(key), "a key", f"allowed: {', '.join(known)}") for key in list(raw)[:20] if key not in known]
 
 
@@ -97,6 +104,8 @@ def _wrong(raw: Mapping[str, Any]) -> list[Problem]:
     doi = raw.get("doi")
     if doi is not None and not (isinstance(doi, str) and DOI.fullmatch(doi)):
         found.append(Problem("doi", f"{str(doi)[:60]!r}", "allowed: null, or a DOI such as 10.5281/zenodo.1234567"))
+    if not isinstance(fitted := raw.get("with_recordings", False), bool):
+        found.append(Problem("with_recordings", f"{str(fitted)[:40]!r}", "allowed: true or false"))
     return found
 
 

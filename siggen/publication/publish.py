@@ -54,9 +54,7 @@ class Publication:
     audit: Path | None
 
 
-def publication(
-    path: Path | str, facts_file: Path | None, audit: Path | None = None, *, with_recordings: bool = False
-) -> Publication:
+def publication(path: Path | str, facts_file: Path | None, audit: Path | None = None) -> Publication:
     """Return what `publish` would write, after all checks but those of the target.
 
     Parameters
@@ -67,8 +65,6 @@ def publication(
         The authors' YAML file.
     audit : Path or None
         The file `audit.json`, or its folder; default: `DIR_audit` beside the set, if it is there.
-    with_recordings : bool
-        Whether numbers that come from recordings (a family of paths, a table of lines) may be published.
 
     Raises
     ------
@@ -85,31 +81,19 @@ def publication(
     facts = _facts(Path(path), facts_file)
     found = _audit_file(Path(path), audit)
     design = _design(dataset)
-    _check_recordings(path, design, with_recordings=with_recordings)
+    fitted = [sensor.name for sensor in design.sensors if sensor.fitted]
+    if fitted and not facts.with_recordings:
+        raise UsageError(
+            f"{path}: paths and lines of {', '.join(fitted)} are fitted to recordings; `with_recordings: true` in "
+            f"{facts_file} publishes them"
+        )
     files = dataset.files
     copied = tuple(name for name in files if name not in (CARD, CROISSANT) and not name.startswith(PREVIEWS))
     size = sum(files[name].bytes for name in copied)
     return Publication(_texts(dataset, design, facts, found), copied, size, found)
 
 
-def _check_recordings(path: Path | str, design: SetDesign, *, with_recordings: bool) -> None:
-    """Refuse a set whose configuration holds what was fitted to recordings, unless its owner says so."""
-    fitted = [s.name for s in design.sensors if s.fitted]
-    if fitted and not with_recordings:
-        raise UsageError(
-            f"{path}: paths and lines of {', '.join(fitted)} are fitted to recordings; "
-            "`siggen publish --with-recordings` publishes them"
-        )
-
-
-def publish(
-    path: Path | str,
-    to: Path | str,
-    facts_file: Path | None,
-    audit: Path | None = None,
-    *,
-    with_recordings: bool = False,
-) -> Publication:
+def publish(path: Path | str, to: Path | str, facts_file: Path | None, audit: Path | None = None) -> Publication:
     """Write a folder that is ready to be uploaded; it is a set that `siggen.open` and `siggen verify` read.
 
     Parameters
@@ -123,7 +107,7 @@ def publish(
         As of `publication`, or if the target is not empty, is inside the set, or holds it.
     """
     _refuse_within(path, to)
-    made = publication(path, facts_file, audit, with_recordings=with_recordings)
+    made = publication(path, facts_file, audit)
     dataset = open_set(path)
     own = {**made.texts, **_previews(dataset)}
     with _target(to, {*made.copied, *own}) as target:

@@ -6,6 +6,8 @@ import re
 from difflib import get_close_matches
 from functools import cache
 
+from siggen.errors import UsageError, how_to_install
+
 OWN = re.compile(r"LicenseRef-[A-Za-z0-9.-]+")
 """How SPDX names a licence that is not on its list (specification, clause 'Other licensing information')."""
 
@@ -33,8 +35,10 @@ def nearest_spdx_licence(said: str) -> str | None:
 @cache
 def _identifiers() -> dict[str, str]:
     """Return identifier by its lower case: licences of the list that are not deprecated, without exceptions."""
-    from license_expression import get_license_index
-
+    try:
+        from license_expression import get_license_index
+    except ImportError:
+        raise UsageError(f"the list of licences needs license-expression: {how_to_install('diagnostics')}") from None
     listed = (
         entry["spdx_license_key"]
         for entry in get_license_index()

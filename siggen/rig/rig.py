@@ -14,7 +14,6 @@ LIMITS = {
     "face-width": (1.0, 500.0, "mm"),
     "speed": (0.05, 500.0, "Hz, of the pinion"),
     "torque": (0.01, 1e6, "N m, on the pinion"),
-    "bores": (1.0, 1000.0, "mm, diameters"),
     "pressure-angle": (14.5, 30.0, "degrees"),
     "fs": (100.0, 1e7, "Hz"),
     "shift": (-1.0, 1.5, "modules"),
@@ -112,7 +111,6 @@ def checked_rig(rig: Rig) -> Rig:
         "face-width": (rig.face_width_mm,),
         "speed": rig.speed_hz,
         "torque": rig.torque_nm,
-        "bores": rig.bores_mm or (),
         "pressure-angle": (rig.pressure_angle_deg,),
         "fs": () if rig.fs_hz is None else (rig.fs_hz,),
         "shift": rig.shifts,
@@ -121,7 +119,7 @@ def checked_rig(rig: Rig) -> Rig:
         low, high, unit = LIMITS[name]
         if not all(low <= value <= high for value in values):
             raise UsageError(f"--{name}: received {_listed(values)}; allowed: {low:g} to {high:g} {unit}")
-        if len(values) == 2 and name not in ("bores", "shift") and values[0] > values[1]:
+        if len(values) == 2 and name != "shift" and values[0] > values[1]:
             raise UsageError(f"--{name}: received {_listed(values)}; allowed: the lowest value first")
     if not all(5 <= z <= 1000 for z in rig.teeth):
         raise UsageError(f"--teeth: received {_listed(rig.teeth)}; allowed: 5 to 1000 teeth of pinion and gear")

@@ -54,8 +54,8 @@ def rig_of(
     Parameters
     ----------
     answers : mapping
-        Option of `siggen init`, without dashes -> what was written; `face-width`, `torque`, `bores`, `fs` and
-        `shift` may be empty.
+        Option of `siggen init`, without dashes -> what was written; `face-width`, `torque`, `fs` and `shift`
+        may be empty.
 
     Raises
     ------
@@ -75,8 +75,8 @@ def rig_of(
             f"{width_mm:g} mm, {FACE_OVER_MODULE:g} modules (usual: 8 to 16; Norton, Machine Design)"
         )
     rig = Rig(teeth, module_mm, width_mm, _speeds(answers["speed"]), (1.0, 1.0), sensors, pressure_angle_deg)
-    bores, fs = answers.get("bores", ""), answers.get("fs", "")
-    rig = replace(rig, bores_mm=_two("bores", bores) if bores else None, fs_hz=_one("fs", fs) if fs else None)
+    if fs := answers.get("fs", ""):
+        rig = replace(rig, fs_hz=_one("fs", fs))
     shift = answers.get("shift", "")
     shifts = _numbers("shift", shift, SHIFTS) if shift else []
     if len(shifts) > 2:

@@ -1,4 +1,4 @@
-"""The YAML file of a rig: what the user gave, what follows from it, and everything else from a preset."""
+"""The YAML file of a rig: what the user gave, what follows from it, and everything else from the preset bench."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SECOND_STAGE_TEETH = range(17, 29)
 """Of a pinion on the gear's shaft: from the least without undercut at 20 degrees (assumed; a measured one had 21)."""
 
 
-def rig_text(rig: Rig, name: str, base: str, proposals: Mapping[str, str] | None = None) -> str:
+def rig_text(rig: Rig, name: str, proposals: Mapping[str, str] | None = None) -> str:
     """Return the file's text.
 
     Parameters
@@ -30,28 +30,26 @@ def rig_text(rig: Rig, name: str, base: str, proposals: Mapping[str, str] | None
     rig : Rig
     name : str
         Of the set.
-    base : str
-        Preset that it extends.
     proposals : mapping, optional
         Option of `siggen init` -> where its number comes from, for those that were not given.
     """
     numbers, why = rig_numbers(rig), dict(proposals or {})
-    gears = (_head(rig, name, base, numbers, why), _gears(rig, numbers, why), _manufacture(rig))
+    gears = (_head(rig, name, numbers, why), _gears(rig, numbers, why), _manufacture(rig))
     around = (_background(rig, numbers), _sensors(rig))
     return "\n".join((*gears, _dynamics(rig, numbers), _states(rig), *around))
 
 
-def _head(rig: Rig, name: str, base: str, numbers: RigNumbers, why: Mapping[str, str]) -> str:
+def _head(rig: Rig, name: str, numbers: RigNumbers, why: Mapping[str, str]) -> str:
     turns = numbers.duration_s * rig.speed_hz[0]
     cut = f"less than the hunting period of {rig.hunting_turns} turns"
     whole = "one hunting period and a turn more" if turns > rig.hunting_turns else cut
     return f"""\
 # yaml-language-server: $schema={SCHEMA_FILE}
-# Made by `siggen init`. What stands here differs from the preset {base}; all else is its own.
+# Made by `siggen init`. What stands here differs from the preset bench; all else is its own.
 # `siggen plan` says what follows from it and what is implausible. Numbers that you know better: change them here.
 
 name: {_quoted(name)}
-extends: {base}
+extends: bench
 specimens: 40                 # gearboxes; more only add records
 {_sampling(rig, numbers)}
 duration_s: {_exact(numbers.duration_s)}               # {whole} at {rig.speed_hz[0]:g} Hz

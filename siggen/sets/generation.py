@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from concurrent.futures import Executor
+from dataclasses import replace
 from pathlib import Path, PurePath
 
 from siggen.dataset.folder import content_of
@@ -81,7 +82,13 @@ def generate(
         storage.delete_leftovers(of_dead=part is not None)
         with Interruption() as interruption:
             told = {"progress": progress or _silent, "events": events, "limit": limit}
-            return SetRun(design, storage, chosen, interruption, content.earlier, part, **told).run()  # type: ignore[arg-type]
+            made = SetRun(design, storage, chosen, interruption, content.earlier, part, **told).run()  # type: ignore[arg-type]
+    if not content.published:
+        return made
+    note = (
+        f"{', '.join(content.published)} and the card of `siggen publish` are no part of the set now: publish it anew"
+    )
+    return replace(made, notes=(*made.notes, note))
 
 
 def _refuse_arguments(out: object, part: object) -> None:

@@ -86,7 +86,7 @@ def test_the_least_lengths_that_are_let_through_can_be_built(shafts: object, mat
 def test_small_equal_gears_turn_in_bearings_larger_than_they_are(teeth: str, module_mm: str) -> None:
     """Gears of 14 mm on shafts of 9 mm, as `siggen init` proposes them, under a lid over which nobody gave a height."""
     rig, _ = rig_of({"teeth": teeth, "module": module_mm, "speed": "1450rpm"})
-    config = load_config({**inherited(parse_yaml(rig_text(rig, "rig", "bench"), "rig"))})
+    config = load_config({**inherited(parse_yaml(rig_text(rig, "rig"), "rig"))})
     pair = gear_pair(config.config.gears)
     for specimen_id in range(config.specimens):
         specimen = config.gearbox(specimen_id)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+import typer
 from typer.testing import CliRunner
 
 import siggen.cli.app
@@ -52,6 +54,28 @@ def test_every_command_shows_an_example(name):
         assert result.exit_code == 0
         assert "Example" in result.output
         assert f"siggen {name}" in result.output
+
+
+def test_seven_commands_have_few_options_and_json_wherever_something_is_printed():
+    options = {name: set(re.findall(r"--[a-z][a-z-]*", usage(name))) - {"--help"} for name in NAMES}
+    assert len(options) == 7
+    assert sum(len(own) for own in options.values()) <= 48
+    assert [name for name, own in options.items() if not {"--json", "--log-json"} & own] == []
+
+
+def usage(name: str) -> str:
+    """Return the names of the options of a command, not what their sentences mention."""
+    command = typer.main.get_command(app).commands[name]
+    return " ".join(option for parameter in command.params for option in parameter.opts)
+
+
+def test_the_completion_script_is_printed_and_an_option_completed():
+    command = str(Path(sys.executable).with_name("siggen"))
+    script = subprocess.run([command, "--show-completion", "bash"], capture_output=True, text=True, check=True).stdout
+    assert "complete -o default -F _siggen_completion siggen" in script
+    asked = {"_SIGGEN_COMPLETE": "complete_bash", "COMP_WORDS": "siggen generate --exe", "COMP_CWORD": "2"}
+    found = subprocess.run([command], capture_output=True, text=True, check=True, env={**os.environ, **asked})
+    assert found.stdout.split() == ["--executor"]
 
 
 def test_help_of_inspect_names_every_view():

@@ -21,10 +21,11 @@ from pyarrow import csv
 import siggen
 from benchmarks.row import Row
 from diagnostics.base import reading_process
-from diagnostics.prediction.model_facts import FACTS_FILE, MODEL_FILES, file_hashes, sealed_text, unsealed_text
+from diagnostics.prediction.model_facts import FACTS_FILE, MODEL_FILES, file_hashes
 from diagnostics.prediction.released_model import load_model
 from diagnostics.scoring.score import score
 from siggen.dataset.reading import Dataset
+from siggen.dataset.seal import sealed, unsealed
 from tests.faults.mutations import Case, judged, mutated_bytes, outcomes_row
 from tests.faults.victims import small_model, small_set
 
@@ -86,14 +87,14 @@ def mutated_models(count: int, folder: Path, seed: int = 0) -> Iterator[Case]:
     chance = Random(seed)
     files = [folder / name for name in MODEL_FILES if name.endswith((".skops", ".json", ".safetensors"))]
     files = [folder / FACTS_FILE, *(file for file in files if file.is_file())]
-    facts = files[0].read_text(encoding="utf-8")
+    facts = files[0].read_bytes()
     for number in range(count):
         file = files[number % len(files)]
         whole = file.read_bytes()
         file.write_bytes(mutated_bytes(whole, chance))
         if file.name != FACTS_FILE:
-            content = {**unsealed_text(facts), "files": file_hashes(folder)}
-            files[0].write_text(sealed_text(content), encoding="utf-8")
+            content = {**unsealed(FACTS_FILE, facts), "files": file_hashes(folder)}
+            files[0].write_bytes(sealed(content))
         yield judged(f"{number} {file.name}", lambda: load_model(folder))
         file.write_bytes(whole)
-        files[0].write_text(facts, encoding="utf-8")
+        files[0].write_bytes(facts)

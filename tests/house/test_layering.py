@@ -32,7 +32,7 @@ DOOR = {
     "siggen", "siggen.errors", "siggen.printable", "siggen.columns.record", "siggen.columns.drivetrain",
     "siggen.dataset.reading", "siggen.keys.column",
 }  # fmt: skip
-SHARED = {"siggen.child_environment", "siggen.file_writing", "siggen.keys.yaml_source"} | {
+SHARED = {"siggen.child_environment", "siggen.dataset.seal", "siggen.file_writing", "siggen.keys.yaml_source"} | {
     f"siggen.cli.{name}" for name in ("echo", "option_groups", "json_output")
 }
 """What both programs are built with; it knows no set."""

@@ -63,6 +63,7 @@ def test_a_target_in_the_set_or_around_it_is_refused(kept: Path, tmp_path: Path,
         ({"authors": []}, "authors"),
         ({"authors": [{"name": "A, B", "orcid": "1"}]}, "authors.0.orcid"),
         ({"licence": "cc0-1.0"}, "licence"),
+        ({"with_recordings": "yes"}, "with_recordings"),
     ],
 )
 def test_what_the_authors_say_has_to_have_its_form(tmp_path: Path, changes: dict[str, Any], path: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import signal
 import subprocess
 import sys
@@ -97,6 +98,14 @@ def test_what_is_published_is_a_copy_without_links(place: Path, whole: dict[str,
     assert len(files) == len(whole)
     assert all(not path.is_symlink() and path.stat().st_nlink == 1 for path in files)
     assert siggen.open(place / "whole").labels().equals(siggen.open(place / "set").labels())
+
+
+def test_generate_on_a_damaged_published_set_says_what_is_lost(place: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(place / "whole", tmp_path / "upload"))
+    (folder / "README.md").unlink()
+    (note,) = write_fake_set(folder).notes
+    assert note == "croissant.json and the card of `siggen publish` are no part of the set now: publish it anew"
+    assert (folder / "README.md").read_bytes() == (place / "set/README.md").read_bytes()
 
 
 def test_a_folder_that_holds_something_is_never_touched(place: Path, tmp_path: Path) -> None:

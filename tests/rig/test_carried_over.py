@@ -83,13 +83,13 @@ def test_a_machine_carried_over_is_the_one_that_siggen_init_writes() -> None:
     """With the bores that the carried-over gearbox has: `siggen init` takes its own from the catalogue, in steps."""
     before = Rig((18, 47), 3.0, 20.0, (30.0, 35.0), (15.0, 60.0), bores_mm=(25.0, 35.0))
     pair = PairSection(teeth=(25, 56), module_mm=4.0, face_width_mm=45.0)
-    written = _parsed(rig_text(before, "before", "bench"))
+    written = _parsed(rig_text(before, "before"))
     pairs = written.config.gears.model_copy(update={"pairs": (pair,)})
     own = pair_config(written.with_sections(gears=pairs).config, 0)
     torque = own.operating_points[0].torque_nm.high  # type: ignore[union-attr]
     bores_mm = (2.0 * own.gears.pinion.bore_radius_mm, 2.0 * own.gears.gear.bore_radius_mm)  # type: ignore[operator]
     rig = Rig(pair.teeth, 4.0, 45.0, (30.0, 35.0), (torque / 4.0, torque), bores_mm=bores_mm)
-    after = _parsed(rig_text(rig, "a", "bench"))
+    after = _parsed(rig_text(rig, "a"))
     edge = ".mesh.pit_edge_radius_mm"  # grows with the module here; `siggen init` leaves the preset's
     for section in ("gears", "dynamics"):
         found, wanted = (dict(_numbers(getattr(one, section).model_dump())) for one in (own, after.config))

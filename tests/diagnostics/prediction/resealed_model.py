@@ -6,11 +6,12 @@ import json
 from pathlib import Path
 from typing import Any
 
-from diagnostics.prediction.model_facts import file_hashes, sealed_text
+from diagnostics.prediction.model_facts import file_hashes
+from siggen.dataset.seal import sealed
 
 
 def reseal(folder: Path, **entries: Any) -> None:
     """Write `model.json` again for the files that are there now, with other entries where given."""
     content = json.loads((folder / "model.json").read_text()) | entries | {"files": file_hashes(folder)}
     del content["digest"]
-    (folder / "model.json").write_text(sealed_text(content))
+    (folder / "model.json").write_bytes(sealed(content))

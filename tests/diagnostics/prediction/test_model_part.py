@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from diagnostics.cli.app import main
-from diagnostics.prediction.model_facts import sealed_text, unsealed_text
 from diagnostics.prediction.released_model import load_model
 from diagnostics.training.classifiers import LogisticBaseline
+from siggen.dataset.seal import sealed, unsealed
 from siggen.errors import UsageError
 from tests.diagnostics.prediction.resealed_model import reseal
 
@@ -138,16 +138,16 @@ def test_features_in_another_order_are_refused_by_the_hash(folder: Path) -> None
 
 
 def test_a_model_that_does_not_say_what_its_classes_are_is_refused_with_the_way_out(folder: Path) -> None:
-    content = unsealed_text((folder / "model.json").read_text(encoding="utf-8"))
+    content = unsealed("model.json", (folder / "model.json").read_bytes())
     assert content["facts"].pop("class_kind") == "state"
-    (folder / "model.json").write_text(sealed_text(content | {"format": "siggen-diagnostics model 5"}))
+    (folder / "model.json").write_bytes(sealed(content | {"format": "siggen-diagnostics model 5"}))
     with pytest.raises(UsageError, match=r"received format '.* 5'.*Train again: .*"):
         load_model(folder)
 
 
 def test_an_unknown_kind_of_class_in_a_model_is_refused(folder: Path) -> None:
-    content = unsealed_text((folder / "model.json").read_text(encoding="utf-8"))
+    content = unsealed("model.json", (folder / "model.json").read_bytes())
     content["facts"]["class_kind"] = "colour"
-    (folder / "model.json").write_text(sealed_text(content))
+    (folder / "model.json").write_bytes(sealed(content))
     with pytest.raises(UsageError, match="received 'colour'; allowed are state, fault"):
         load_model(folder)

@@ -15,14 +15,12 @@ import pytest
 from pyarrow import parquet
 
 from diagnostics.cli.app import main
-from diagnostics.prediction.model_facts import manifest_digest
 from diagnostics.prediction.prediction import predict_recording
 from diagnostics.prediction.released_model import load_model
 from diagnostics.prediction.training_distance import fit_part
 from diagnostics.recordings.measured_recording import read_recording
 from diagnostics.recordings.taken import RecordingFacts
 from diagnostics.statistics.calibration import tempered
-from siggen.dataset.seal import sealed
 from siggen.errors import UsageError
 from tests.rig_file import rig_file
 
@@ -183,11 +181,6 @@ def test_loading_never_unpickles(name: str, models_folder: Path, tmp_path: Path)
         load_model(tmp_path)
     with pytest.raises(UsageError, match="not read"):
         load_model(tmp_path / name)
-
-
-def test_the_digest_is_the_one_that_the_manifest_carries() -> None:
-    manifest = {"name": "häufig", "identity": "0", "shards": [{"file": "a", "sha256": "b"}]}
-    assert manifest_digest(manifest) == json.loads(sealed(manifest))["digest"]
 
 
 def test_distance_is_one_for_typical_records_whatever_the_speed_and_grows_off_them() -> None:
