@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows
+from diagnostics.cli.recording_options import GearOptions, RecordingOptions, recordings_of
 from siggen.cli.echo import echo
 from siggen.cli.option_groups import grouped
 from siggen.errors import EXIT_USAGE, UsageError
@@ -54,7 +54,7 @@ def baseline(
     from diagnostics.recordings.taken import channel_names, unit_or_unknown
     from diagnostics.records.gear_train import gear_names
 
-    sources = [source for said in healthy for source in file_rows(said)]
+    sources = recordings_of(healthy)
     read = recording.read(sources[0])
     train, facts, span = gears.train(read, "--teeth"), read.facts(), read.speed_range_hz()
     first = first_readable(sources, facts)

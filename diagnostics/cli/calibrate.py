@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from diagnostics.cli.recording_options import RecordingOptions, file_rows
+from diagnostics.cli.recording_options import RecordingOptions, file_rows, recordings_of
 from siggen.cli.echo import echo
 from siggen.cli.option_groups import grouped
 
@@ -102,7 +102,7 @@ def calibrate(
 
     check_new(out, use.inject)
     require_packages("the page of a calibration", "matplotlib")
-    sources = [source for said in healthy for source in file_rows(said)]
+    sources = recordings_of(healthy)
     read = recording.read(sources[0])
     with terminal_stage("the rig", 1):
         described = read_rig(machine)

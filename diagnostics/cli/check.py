@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from diagnostics.cli.recording_options import Rig, file_rows, said_by
+from diagnostics.cli.recording_options import Rig, recordings_of, said_by
 from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 
@@ -61,7 +61,7 @@ def check(
     require_packages("the page of a machine", "matplotlib")
     known = load_machine(machine)
     load_note = load_sentence(known, load)
-    sources = [source for said in new for source in file_rows(said)]
+    sources = recordings_of(new)
     read = said_by(rig, sources[0]).over(known.facts)
     if known.facts.unit == UNKNOWN_UNIT != read.unit:
         raise UsageError(

@@ -11,7 +11,7 @@ import typer
 
 from diagnostics.base.beside import beside as path_beside
 from diagnostics.base.progress import Stage
-from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows
+from diagnostics.cli.recording_options import GearOptions, RecordingOptions, is_recording, recordings_of
 from diagnostics.cli.set_options import Open, opened
 from siggen.cli.echo import echo
 from siggen.cli.option_groups import grouped
@@ -84,7 +84,7 @@ def _read(
 ) -> list[RecordingIndicators]:
     from diagnostics.machine.recording_indicators import recording_indicators
 
-    sources = [source for one in said for source in file_rows(one)]
+    sources = recordings_of(said)
     found: list[RecordingIndicators] = []
     with stage("indicators of recordings", len(sources)) as advance:
         for path, row in sources:
@@ -135,7 +135,7 @@ def explore(
     first = Path(targets[0])
     if out and out.is_dir():
         raise UsageError(f"--out {out}: received a folder; allowed is the name of a file, such as {out / 'set.html'}")
-    if (first / MACHINE_FILE).is_file() or gears.teeth or file_rows(targets[0])[0][0].is_file():
+    if (first / MACHINE_FILE).is_file() or gears.teeth or is_recording(targets[0]):
         place = first.with_suffix("") if first.is_file() else first
         path = _recordings_page(targets, (gears, recording), out or path_beside(place, "_explore.html"), full)
     elif len(targets) > 1:
@@ -194,7 +194,7 @@ def _recordings_page(
         name = folder.resolve().name
     else:
         gears, said = described
-        read = said.read(file_rows(files[0])[0])
+        read = said.read(recordings_of(files)[0])
         train = gears.train(read, f"{files[0]}: teeth unknown")
         shown = of_files(files, train, read.facts(), read.speed_range_hz(), terminal_stage)
         name = ", ".join(Path(target).name for target in files[:3])

@@ -8,12 +8,14 @@ from typing import Annotated
 
 import typer
 
-from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows
+from diagnostics.cli.recording_options import GearOptions, RecordingOptions, is_recording, recordings_of
 from diagnostics.cli.set_options import OwnIndicators
 from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.errors import UsageError
+
+TABLES = (".parquet", ".csv")
 
 
 @grouped
@@ -53,7 +55,12 @@ def indicators(
 
     Example: siggen-diagnostics indicators run.csv --fs 25600 --teeth 25,56 --speed 14,26
     """
-    if gears.teeth or file_rows(targets[0])[0][0].is_file():
+    of_files = bool(gears.teeth) or is_recording(targets[0])
+    tables = () if of_files else TABLES
+    if out is not None and out.suffix[1:].isalpha() and out.suffix not in tables and not out.is_dir():
+        table = "" if of_files else f", or a table, {' or '.join(TABLES)}"
+        raise UsageError(f"--out {out}: received a name that ends in {out.suffix}; allowed: a folder{table}")
+    if of_files:
         if indicator:
             raise UsageError("--indicator: for sets only; leave it out for recordings")
         _of_recordings(targets, gears, recording, out, as_json)
@@ -62,7 +69,7 @@ def indicators(
         raise UsageError("--json: for recordings only; --out table.parquet or .csv has the indicators of a set")
     if len(targets) > 1:
         raise UsageError(f"{targets[1]}: a second argument after the folder {targets[0]}; allowed: one set at a time")
-    if out is not None and out.suffix in (".parquet", ".csv"):
+    if out is not None and out.suffix in TABLES:
         _table_alone(Path(targets[0]), out, indicator)
     else:
         span = recording.read((Path(targets[0]), None)).speed_range_hz()
@@ -138,7 +145,7 @@ def _of_recordings(
     from diagnostics.records.gear_train import gear_names
 
     require_packages("the page of indicators", "matplotlib")
-    sources = [source for said in targets for source in file_rows(said)]
+    sources = recordings_of(targets)
     read = recording.read(sources[0])
     train = gears.train(read, f"{targets[0]}: teeth unknown")
     facts, speed_range_hz = read.facts(), read.speed_range_hz()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows, two_gears
+from diagnostics.cli.recording_options import GearOptions, RecordingOptions, file_rows, recordings_of, two_gears
 from diagnostics.cli.set_options import OwnIndicators
 from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
@@ -76,7 +76,7 @@ def predict(
         from diagnostics.prediction.released_model import load_model
 
         loaded = load_model(model, load_indicators(indicator))
-    sources = [source for said in file for source in file_rows(said)]
+    sources = recordings_of(file)
     reading = recording.read(sources[0])
     pair = _teeth(sources[0][0], gears.said(reading), loaded.facts.teeth)
     facts, names, units = reading.facts(), loaded.facts.channels, loaded.facts.units

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
@@ -172,6 +173,35 @@ def known_speed_range_hz(said: str) -> tuple[float, float]:
     if not 0.0 < hz < inf:
         raise UsageError(f"--speed: received {said!r}; allowed is a speed in Hz or rpm, such as 29.7 or 1780rpm")
     return (1.0 - KNOWN_WITHIN) * hz, (1.0 + KNOWN_WITHIN) * hz
+
+
+def recordings_of(said: Sequence[str]) -> list[Source]:
+    """Return file and row of every recording that is named.
+
+    Raises
+    ------
+    UsageError
+        If none of them is a file: what is missing else, such as teeth, is asked for in vain then.
+    """
+    found = [source for one in said for source in file_rows(one)]
+    if not any(path.is_file() for path, _ in found):
+        first = found[0][0]
+        raise UsageError(f"{first}: {'is a folder; give the file of one recording' if first.is_dir() else 'no such file'}")
+    return found
+
+
+def is_recording(said: str) -> bool:
+    """Return whether a target is a recording, and no folder of a set.
+
+    Raises
+    ------
+    UsageError
+        If it is nothing that is there.
+    """
+    path = file_rows(said)[0][0]
+    if not path.exists() and "://" not in said:
+        raise UsageError(f"{path}: no such file or folder; allowed: recordings, or the folder of a finished set")
+    return path.is_file()
 
 
 def file_rows(said: str) -> list[tuple[Path, int | None]]:

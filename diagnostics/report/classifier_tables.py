@@ -33,7 +33,7 @@ from diagnostics.page.wording import (
 from diagnostics.records.record_classes import STATE
 from diagnostics.report.indicators import in_a_sentence
 from diagnostics.scoring.score import Scores
-from diagnostics.statistics.evaluation import Interval, IntervalScores
+from diagnostics.statistics.evaluation import FEWEST_THAT_AGREE, Interval, IntervalScores
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -360,9 +360,6 @@ def _size_cell(found: FoundSize | None) -> Cell:
 
 UNDEFINED = Interval(math.nan, math.nan, math.nan)
 
-FEWEST_SPECIMENS = 6
-"""Test specimens from which an interval may decide: with five even a sign test cannot fall below 0.05 (2/32)."""
-
 
 def comparison_table(training: Training) -> TableBlock:
     """Return the paired differences of classifiers, and whether the interval of each, by itself, excludes zero."""
@@ -380,14 +377,14 @@ def comparison_table(training: Training) -> TableBlock:
     caption = (
         "Paired differences on the same resampled specimens, with 95 % limits. Where the limits of macro-AUROC include "
         "0, the set does not show which classifier is better. There is no correction for many pairs: about one pair in "
-        f"twenty excludes 0 even where no pair differs. The last column needs {FEWEST_SPECIMENS} test gearboxes."
+        f"twenty excludes 0 even where no pair differs. The last column needs {FEWEST_THAT_AGREE} test gearboxes."
     )
     return TableBlock(head, rows, caption=caption, sortable=True)
 
 
 def verdict(difference: Interval, specimens: int) -> str:
     """Return whether a paired interval excludes zero; resampling a few specimens makes intervals too narrow to say."""
-    if specimens < FEWEST_SPECIMENS or not math.isfinite(difference.low):
+    if specimens < FEWEST_THAT_AGREE or not math.isfinite(difference.low):
         return "too few gearboxes"
     return "yes" if difference.low > 0.0 or difference.high < 0.0 else "no"
 

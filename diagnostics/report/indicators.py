@@ -357,7 +357,8 @@ def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> T
             ),
             Cell(ARROWS[r.direction]),
         ]
-        for rank, r in enumerate(found[:MOST_RANKED], start=1)
+        for rank, r in enumerate(found, start=1)
+        if rank <= MOST_RANKED or known_column(r.column, r.gears) is None
     ]  # fmt: skip
     shown = f"The best {len(rows)} of {len(found)}" if len(found) > len(rows) else "Ranking"
     caption = f"{shown} between different specimens: AUC against healthy with 95 % limits. The score is their mean."
@@ -491,10 +492,32 @@ def evaluated(
 
 
 def findings(dataset: Dataset, found: Evaluated) -> list[str]:
-    """Say what the scores mean, which indicators are best, and what survives."""
+    """Say what the scores mean, where the user's own indicators stand, which are best, and what survives."""
     states = found.records.states
     meaning = meaning_of_scores(dataset.config, scored=bool(states))
-    return [meaning, *indicator_findings(found.found, states, _specimens(found.table))]
+    return [meaning, *own_ranks(found), *indicator_findings(found.found, states, _specimens(found.table))]
+
+
+def own_ranks(evaluated: Evaluated) -> list[str]:
+    """Return a sentence for each of the user's own indicators: where its best channel stands among all columns.
+
+    None without a damaged state, which gives no order.
+    """
+    best: dict[str, tuple[int, IndicatorResult]] = {}
+    for rank, result in enumerate(evaluated.found if evaluated.records.states else (), start=1):
+        if known_column(result.column, result.gears) is None:
+            best.setdefault(result.indicator, (rank, result))
+    return [_own_rank(rank, result, len(evaluated.found)) for rank, result in best.values()]
+
+
+def _own_rank(rank: int, own: IndicatorResult, columns: int) -> str:
+    where = f"Your indicator {in_a_sentence(own.column, own.gears)}"
+    if not math.isfinite(own.score_others.value):
+        return f"{where} has no rank: it has no value where gearboxes are compared."
+    return (
+        f"{where} has rank {rank} of {columns} columns between different specimens: AUC over the states "
+        f"{own.score_others.value:.2f} ({limits(own.score_others)}), 0.5 is chance."
+    )
 
 
 def write_evaluation(dataset: Dataset, found: Evaluated, folder: Path, *, values: bool = False) -> Path:

@@ -39,7 +39,7 @@ from diagnostics.records.state_classes import SHAM, ordered_states
 from diagnostics.report.answer import answer_figure, answer_sentences, first_answer, first_caption, first_figure
 from diagnostics.report.audit_words import audit_beside, audit_sentence
 from diagnostics.report.drawing import draw, example_set, reported_gearboxes
-from diagnostics.report.indicators import Evaluated, evaluated, figures, write_evaluation
+from diagnostics.report.indicators import Evaluated, evaluated, figures, own_ranks, write_evaluation
 from diagnostics.report.report_page import ANSWER, CAPTION, FIRST, Reported, report_page
 from diagnostics.report.sentences import summary
 from diagnostics.scoring.score import Scores, score
@@ -147,7 +147,7 @@ def write_report(
     answer = answer_sentences(detectors, error_free=is_error_free(dataset.config))
     sentences = [*(text for _, text in answer), *summary(dataset.config, training, found), audit]
     metrics = report_metrics(dataset, table, seed, sentences, training, found, drawing.notes)
-    metrics["headline"] = first_answer(detectors).replace("**", "")
+    metrics["headline"] = " ".join([*own_ranks(judged), first_answer(detectors).replace("**", "")])
     metrics["detectors"] = {
         side: {family: detector.numbers() for family, detector in getattr(detectors, side).items()}
         for side in ("alone", "referenced")

@@ -47,7 +47,14 @@ from diagnostics.report.classifier_tables import (
     your_scores,
 )
 from diagnostics.report.drawing import Drawing
-from diagnostics.report.indicators import Evaluated, definition_html, detail_blocks, evaluation_notes, ranking_blocks
+from diagnostics.report.indicators import (
+    Evaluated,
+    definition_html,
+    detail_blocks,
+    evaluation_notes,
+    own_ranks,
+    ranking_blocks,
+)
 from diagnostics.report.sentences import (
     area_sentence,
     comparison_sentence,
@@ -141,7 +148,9 @@ def _answer(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> Op
     figure = next((pictures[name] for name in (FIRST, ANSWER) if name in pictures), None)
     shown = FigureBlock(*figure, RecordLinks("Records", state_links(states))) if figure else None
     sure = first_certainty(detectors, error_free=is_error_free(reported.dataset.config), audit=reported.audit)
-    said = [("What is found", first_answer(detectors)), ("How sure", sure)]
+    own = own_ranks(reported.evaluated)
+    asked = [("Your indicators" if len(own) > 1 else "Your indicator", " ".join(own))] if own else []
+    said = [*asked, ("What is found", first_answer(detectors)), ("How sure", sure)]
     return Opening(said, shown)
 
 

@@ -25,6 +25,8 @@ def keep_table(path: Path, folder: Path) -> None:
     UsageError
         If it cannot be read, or claims to be larger than any predictions are.
     """
+    if not path.exists():
+        raise UsageError(f"{path}: no such file; allowed are .parquet and .csv")
     pa.set_memory_pool(pa.system_memory_pool())  # others reserve more than the limit of this process
     try:
         table = csv.read_csv(path) if path.suffix.lower() == ".csv" else _parquet(path)

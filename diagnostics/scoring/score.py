@@ -32,16 +32,20 @@ from diagnostics.scoring.score_rows import ScoreRow, score_figure
 from diagnostics.scoring.task import Measure, Task
 from diagnostics.scoring.tasks import TASKS, truth_of
 from diagnostics.scoring.truth import Truth
-from diagnostics.statistics.evaluation import RESAMPLES, Interval, area_interval, bootstrap_weights, interval
+from diagnostics.statistics.evaluation import (
+    FEWEST_THAT_AGREE,
+    RESAMPLES,
+    Interval,
+    area_interval,
+    bootstrap_weights,
+    interval,
+)
 from diagnostics.statistics.indicator_statistics import LARGEST_BLOCK
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, counted
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-FEWEST_GEARBOXES = 6
-"""Test gearboxes from which on a difference whose limits exclude 0 is worth a word, as in the report."""
 
 YOURS, TEST = "yours", "test"
 Answers = dict[str, np.ndarray]
@@ -124,10 +128,9 @@ class Scores:
                 block = title
             difference = f"   {first} minus this {_shown(row.difference, '+.3f')}" if row.difference else ""
             lines.append(f"  {TITLES.get(row.name, row.name):{width}}  {_shown(row.score, '.3f')}{difference}")
-        if self.gearboxes < FEWEST_GEARBOXES:
+        if self.gearboxes < FEWEST_THAT_AGREE:
             few = counted(self.gearboxes, "gearbox", "gearboxes")
-            said = f"shares have exact limits, all else and differences have limits from {FEWEST_GEARBOXES} on"
-            lines += ["", f"{few}: too few to tell classifiers apart; {said}"]
+            lines += ["", f"{few}: too few to tell classifiers apart; that takes {FEWEST_THAT_AGREE}"]
         return "\n".join([*lines, "", self.verdict])
 
     @property
@@ -137,7 +140,9 @@ class Scores:
         sign = -1.0 if own.falls else 1.0
 
         def side(low: float, high: float) -> str:
-            """Return on which side of 0 both limits lie; undefined ones tell nothing."""
+            """Return on which side of 0 both limits lie; undefined ones tell nothing, nor do those of few gearboxes."""
+            if self.gearboxes < FEWEST_THAT_AGREE:
+                return "not told from"
             low, high = sorted((sign * low, sign * high))
             return "better than" if low > 0.0 else "worse than" if high < 0.0 else "not told from"
 
@@ -283,13 +288,8 @@ def _row(
         measure=measure.name,
         records=part,
         name=name,
-        score=(area_interval if measure.is_share else _resampled)(samples, measure.gearboxes(truth)),
+        score=(area_interval if measure.is_share else interval)(samples, measure.gearboxes(truth)),
         chance=measure.chance(truth),
-        difference=None if own is None else _resampled(own - samples, truth.gearboxes),
+        difference=None if own is None else interval(own - samples, truth.gearboxes),
         falls=measure.falls,
     )
-
-
-def _resampled(samples: np.ndarray, gearboxes: int) -> Interval:
-    """Return limits by resampling; few gearboxes that agree would make them meet, so they have none."""
-    return interval(samples, gearboxes if gearboxes >= FEWEST_GEARBOXES else 0)

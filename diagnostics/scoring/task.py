@@ -57,6 +57,8 @@ class Taken:
         if self.places is not None:
             return self._positions(column.to_pylist(), self.places)
         rows = len(column)
+        if pa.types.is_null(column.type):  # what a CSV file with no number in the column is read as
+            return np.zeros(rows), [("is nan", np.ones(rows, dtype=bool))]
         if not (pa.types.is_integer(column.type) or pa.types.is_floating(column.type)):
             return np.zeros(rows), [(f"holds {column.type}", np.ones(rows, dtype=bool))]
         values = np.asarray(column.to_numpy(zero_copy_only=False), dtype=np.float64)

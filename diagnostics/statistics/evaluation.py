@@ -26,6 +26,8 @@ from diagnostics.base.seeding import Purpose, generator
 
 RESAMPLES = 1000
 LEVEL = 0.95
+FEWEST_THAT_AGREE = 6
+"""Gearboxes: of fewer, all of one sign come by chance in more than one of twenty cases, since 2 / 2^5 = 0.06."""
 UNKNOWN = -1
 """Index of a state that a classifier does not know."""
 
@@ -212,13 +214,18 @@ def column_auc(values: np.ndarray, positive: np.ndarray) -> np.ndarray:
 
 
 def interval(samples: np.ndarray, specimens: int) -> Interval:
-    """Return the interval of a statistic: row 0 is its value, the others its resamples."""
+    """Return the interval of a statistic: row 0 is its value, the others its resamples.
+
+    Few gearboxes that agree make its limits meet, which says nothing of others: then it has none.
+    """
     drawn = samples[1:]
     finite = np.isfinite(drawn)
     defined = drawn if finite.all() else drawn[finite]
     if specimens < 2 or defined.size == 0:
         return Interval(float(samples[0]), math.nan, math.nan)
     low, high = np.quantile(defined, [(1.0 - LEVEL) / 2.0, (1.0 + LEVEL) / 2.0])
+    if specimens < FEWEST_THAT_AGREE and math.isclose(low, high, rel_tol=1e-12):
+        low = high = math.nan
     return Interval(float(samples[0]), float(low), float(high))
 
 

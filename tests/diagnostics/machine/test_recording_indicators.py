@@ -71,6 +71,9 @@ def test_slips_are_named(recording: Path, tmp_path: Path) -> None:
         ([str(recording), *rig_file(tmp_path, unit="m/s2"), "--teeth", "20,31"], "neither tacho nor speed"),
         ([str(recording), "--teeth", "20,31", "--indicator", "mine:own"], "--indicator: for sets only"),
         ([str(tmp_path / "none.csv"), "--teeth", "20,31"], "no such file"),
+        ([str(tmp_path / "none.csv")], "none.csv: no such file or folder"),
+        ([str(tmp_path), "--teeth", "20,31"], "is a folder; give the file of one recording"),
+        ([str(tmp_path), "--out", "values.txt"], "a name that ends in .txt; allowed: a folder, or a table, .parquet"),
         ([str(tmp_path), str(tmp_path)], "a second argument"),
     ):
         with pytest.raises(SiggenError, match=told):

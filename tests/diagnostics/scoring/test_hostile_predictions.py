@@ -80,12 +80,12 @@ HOSTILE: dict[str, tuple[Write, str]] = {
     "a classifier for each row": (with_classifier(lambda rows: [f"c{k}" for k in range(rows)]), "records missing"),
     "nested numbers": (
         written(lambda table: table.set_column(1, "damage", pa.array([[1.0]] * table.num_rows))),
-        "damage holds null",
+        "damage is nan",
     ),
     "no rows": (written(lambda table: table.slice(0, 0)), "missing"),
     "a pipe": (lambda path, _: os.mkfifo(path), "allowed: a regular file"),
     "a folder": (lambda path, _: path.mkdir(), "allowed: a regular file"),
-    "nothing": (lambda path, _: None, "no readable table"),
+    "nothing": (lambda path, _: None, "no such file"),
     "no bytes": (lambda path, _: path.write_bytes(b""), "no readable table"),
     "a beginning": (lambda path, _: path.write_bytes(b"PAR1" + bytes(20)), "no readable table"),
 }
