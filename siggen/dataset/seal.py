@@ -39,9 +39,7 @@ def digest_of(content: Mapping[str, Any]) -> str:
 
 def _pieces(content: Mapping[str, object]) -> Iterator[bytes]:
     """Yield the JSON in pieces: a manifest has one text per number, far more memory than their bytes."""
-    texts = json.JSONEncoder(indent=1, sort_keys=True, ensure_ascii=False, allow_nan=False, default=_listed).iterencode(
-        content
-    )
+    texts = json.JSONEncoder(indent=1, sort_keys=True, ensure_ascii=False, default=_listed).iterencode(content)
     while piece := "".join(islice(texts, TEXTS_PER_PIECE)):
         yield piece.encode()
     yield b"\n"

@@ -1,4 +1,4 @@
-"""SIGKILL at random moments, on every executor, while a small set of the default model is made; what came of it.
+"""SIGKILL at random moments, on every executor, while small sets of presets are made; what came of it.
 
 After every run each committed file is compared with that of an undisturbed set, and the same command goes on. When the
 set is finished all its files are compared, and the next kills hit a new one.
@@ -28,11 +28,13 @@ from siggen.dataset.storage import LocalFolder
 from tests.faults.process_tree import Process, below, seconds_until_gone
 from tests.faults.ray_cluster import OPEN, RayCluster
 from tests.faults.set_files import committed_problems, committed_shards, set_files, whole_set_problems
-from tests.faults.victim_run import PARTS
+from tests.faults.victim_run import OVERRIDES, PARTS
 
 DRIVER, WORKER, NODE = "driver", "worker", "node"
 PARTS_AND_END, RAY_CLUSTER = "parts", "ray, two nodes"
-COUNTS = {"processes": 100, "serial": 20, PARTS_AND_END: 20, "dask": 20, "ray": 20, RAY_CLUSTER: 10}
+COUNTS = {"processes": 40, "serial": 20, PARTS_AND_END: 20, "dask": 20, "ray": 20, RAY_CLUSTER: 10}
+"""Of the set of quickstart; of every other preset as many as in `EACH`, by processes."""
+EACH = 15
 QUICK_COUNTS = {"processes": 3, "serial": 2, PARTS_AND_END: 2}
 VICTIMS = {"serial": (DRIVER,), PARTS_AND_END: (DRIVER,), RAY_CLUSTER: (NODE,)}
 TRAIL = Path("runs") / "kills.jsonl"
@@ -62,6 +64,7 @@ class Siege:
     """
 
     executor: str
+    preset: str
     count: int
     folder: Path
     reference: Mapping[str, bytes]
@@ -74,12 +77,12 @@ class Siege:
 
     def run(self) -> Self:
         """Kill until there were as many as asked for and the last set is finished."""
-        chance = Random(f"kills {self.executor}")
+        chance = Random(f"kills {self.executor} {self.preset}")
         with RayCluster(self.folder) if self.executor == RAY_CLUSTER else nullcontext() as cluster:
             while len(self.kills) < self.count:
                 self.sets += 1
-                place = self.folder / f"{self.executor.split()[0]}_{self.sets}"
-                for step in steps(self.executor, place):
+                place = self.folder / f"{self.preset}_{self.executor.split()[0]}_{self.sets}"
+                for step in steps(self.executor, place, self.preset):
                     self._until_done(step, chance, cluster)
                 files = set_files(LocalFolder(place))
                 self.wrong += whole_set_problems(place, files, self.reference)
@@ -123,7 +126,13 @@ class Siege:
         self.kills.append(replace(kill, after_s=after_s, committed=len(there)))
         TRAIL.parent.mkdir(exist_ok=True)
         with TRAIL.open("a") as trail:
-            facts = {"executor": self.executor, "set": self.sets, "wrong": len(self.wrong), **asdict(self.kills[-1])}
+            facts = {
+                "executor": self.executor,
+                "preset": self.preset,
+                "set": self.sets,
+                "wrong": len(self.wrong),
+                **asdict(self.kills[-1]),
+            }
             trail.write(json.dumps(facts) + "\n")
 
     def _ended(self, driver: subprocess.Popen[bytes], said: BinaryIO) -> bool:
@@ -151,7 +160,7 @@ class Siege:
         wrong = f"{len(self.wrong)} wrong: {'; '.join(self.wrong[:5])}"
         ends = f"workers ended {orphans_s:.2f} s after their driver; " if DRIVER in victims else ""
         return Row(
-            f"{len(self.kills)} kills, {self.executor} ({counts})",
+            f"{len(self.kills)} kills, {self.preset} by {self.executor} ({counts})",
             wrong if self.wrong else sets,
             f"{ends}{self.gave_up} runs gave up in words",
             None,
@@ -167,25 +176,29 @@ def rows(*, quick: bool) -> Iterator[Row]:
     with tempfile.TemporaryDirectory(prefix="kills", dir="/tmp") as name:
         folder = Path(name)
         os.environ.update(OPEN, RAY_TMPDIR=str(folder / "r"))
-        reference, horizon_s = undisturbed(folder / "reference")
-        for executor in [one for one in counts if _installed(one)]:
-            yield Siege(executor, counts[executor], folder, reference, horizon_s).run().row
+        for preset in OVERRIDES:
+            own = {"processes": EACH} if preset != "quickstart" else counts
+            if quick and own is not counts:
+                return
+            reference, horizon_s = undisturbed(folder / preset, preset)
+            for executor in [one for one in own if _installed(one)]:
+                yield Siege(executor, preset, own[executor], folder, reference, horizon_s).run().row
 
 
-def undisturbed(place: Path) -> tuple[dict[str, bytes], float]:
+def undisturbed(place: Path, preset: str) -> tuple[dict[str, bytes], float]:
     """Return the files of a set that nobody disturbs, and how long it takes with two worker processes."""
     for _ in range(2):  # the first one may compile
         shutil.rmtree(place, ignore_errors=True)
         started_s = time.monotonic()
         with tempfile.TemporaryFile() as said:
-            start(["generate", str(place)], said).wait()
+            start(["generate", str(place), "--preset", preset], said).wait()
     return set_files(LocalFolder(place)), time.monotonic() - started_s
 
 
-def steps(executor: str, place: Path) -> list[list[str]]:
+def steps(executor: str, place: Path, preset: str = "quickstart") -> list[list[str]]:
     """Return the steps that make a set, each as arguments of `victim_run`; the place is the second one."""
     if executor != PARTS_AND_END:
-        return [["generate", str(place), "--executor", executor.split(",", maxsplit=1)[0]]]
+        return [["generate", str(place), "--preset", preset, "--executor", executor.split(",", maxsplit=1)[0]]]
     parts = [["part", str(place), "--part", str(number), "--executor", "serial"] for number in range(1, PARTS + 1)]
     return [*parts, ["generate", str(place), "--executor", "serial"]]
 

@@ -1,4 +1,4 @@
-"""`python -m tests.faults.victim_run STEP PLACE ...`: one step of making a small set of the default model.
+"""`python -m tests.faults.victim_run STEP PLACE ...`: one step of making a small set of a preset.
 
 A process of its own, so that it can be killed. Shards hold one gearbox each: a second of work lies between two commits.
 As the command of siggen it imports next to nothing, since its workers import it first.
@@ -17,19 +17,24 @@ if TYPE_CHECKING:
 SPECIMENS, PARTS = 6, 3
 """Of the set that is killed, made in parts or extended."""
 
-OVERRIDES = (
-    "duration_s=0.04",
-    "internals={quantities: [mesh_force_n]}",
-    "states={healthy: {}, spall: {severity: severe, damage: {kind: irregular, gear: pinion, teeth: 1, "
-    "centre_height_mm: below_pitch, profile_length_mm: 0.8, face_share: 0.5, face_centre_mm: 10}}}",
-)
+INTERNALS = "internals={quantities: [mesh_force_n]}"
+SPALL = "severity: severe, damage: {kind: irregular, teeth: 1, profile_length_mm: 0.5, face_share: 0.5, gear: "
+TWO_STATES = {gear: f"states={{healthy: {{}}, spall: {{{SPALL}{gear}}}}}}}" for gear in ("pinion", "sun")}
+OVERRIDES = {
+    "quickstart": (INTERNALS, TWO_STATES["pinion"]),
+    "families": (TWO_STATES["pinion"],),
+    "fleet": ("life.most=3",),
+    "planetary": (TWO_STATES["sun"],),
+    "bench": (INTERNALS, TWO_STATES["pinion"]),
+}
+"""Of each preset: a set of pairs that differ, lives, planets, and all that `bench` has, in short records."""
 
 
-def default_model(specimens: int = SPECIMENS) -> SetDesign:
-    """Return the quickstart (casing, tooth pairs, contact across the face) with two states and short records."""
+def short_set(preset: str = "quickstart", specimens: int = SPECIMENS) -> SetDesign:
+    """Return a preset (of quickstart casing, tooth pairs, contact across the face) with short records."""
     import siggen
 
-    return siggen.load_config("quickstart", [*OVERRIDES, f"specimens={specimens}"])
+    return siggen.load_config(preset, ["duration_s=0.04", *OVERRIDES[preset], f"specimens={specimens}"])
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -58,13 +63,14 @@ def _run(given: argparse.Namespace) -> None:
 
     part = (given.part, PARTS) if given.step == "part" else None
     who = {"executor": given.executor, "address": given.address}
-    generate(default_model(given.specimens), given.place, given.workers, part=part, **who)
+    generate(short_set(given.preset, given.specimens), given.place, given.workers, part=part, **who)
 
 
 def _arguments(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m tests.faults.victim_run", description=__doc__)
     parser.add_argument("step", choices=("generate", "part"))
     parser.add_argument("place")
+    parser.add_argument("--preset", choices=OVERRIDES, default="quickstart")
     parser.add_argument("--executor", default="processes")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--address")
