@@ -11,7 +11,7 @@ Source: standard literature (jackknife); limits by Student's t with as many degr
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, product
 from pathlib import Path
@@ -46,18 +46,18 @@ class Fitted:
         return f"{self.value:.3g} [{self.low:.3g}, {self.high:.3g}]"
 
 
-def jackknife(values: np.ndarray, statistic: Callable[[np.ndarray], float] = np.mean) -> Fitted:
-    """Return a statistic of recordings (n,) with its interval."""
+def jackknife(values: np.ndarray) -> Fitted:
+    """Return the mean of recordings (n,) with its interval."""
     from scipy.special import stdtrit
 
     known = np.asarray(values, dtype=np.float64)
     known = known[np.isfinite(known)]
     if not known.size:
         return Fitted(math.nan, -math.inf, math.inf)
-    whole = float(statistic(known))
+    whole = float(known.mean())
     if known.size < FEWEST_RECORDINGS:
         return Fitted(whole, -math.inf, math.inf)
-    without = np.array([statistic(np.delete(known, k)) for k in range(known.size)])
+    without = np.array([np.delete(known, k).mean() for k in range(known.size)])
     error = math.sqrt((known.size - 1) / known.size * float(np.square(without - without.mean()).sum()))
     reach = float(stdtrit(known.size - 1, 0.5 + 0.5 * CONFIDENCE)) * error
     return Fitted(whole, whole - reach, whole + reach)

@@ -77,16 +77,12 @@ def wave_lines(multiples: Multiples, drive: TrainOrders, channel: str, known: tu
 
 @dataclass(frozen=True, slots=True)
 class SecondStage:
-    """Teeth on the shaft that both stages share, its name and order; logarithm of the evidence, and without its best.
-
-    The second is what all lines but the best one say.
-    """
+    """Teeth on the shaft that both stages share, its name and order; logarithm of the evidence."""
 
     shaft: str
     teeth: int
     step: float
     score: float
-    of_others: float
 
     @property
     def order(self) -> float:
@@ -107,7 +103,7 @@ def second_stage(multiples: Multiples, drive: TrainOrders) -> SecondStage | None
     """Return the stage that recordings show; None where no comb stands out clearly."""
     steps = {shaft.name: shaft.step for shaft in drive.shafts}
     found = [
-        SecondStage(shaft, count, steps[shaft], score, of_others)
+        SecondStage(shaft, count, steps[shaft], score)
         for shaft, channels in multiples.items()
         for count, score, of_others in _scores(tuple(channels.values()))
         if score >= LEAST_SCORE and of_others >= LEAST_OF_OTHERS

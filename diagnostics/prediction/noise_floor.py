@@ -49,27 +49,13 @@ SEGMENT_S = 0.5
 """2 Hz apart: a line under a Hann window covers some 6 Hz, harmonics of a pinion at 20 Hz or more leave most free."""
 
 
-def floor_roughness(channels: Mapping[str, np.ndarray], fs_hz: float) -> dict[str, float]:
+def _roughness(fs_hz: float, densities: Densities) -> dict[str, float]:
     """Return roughness and difference of the noise floor [Np]; nothing where rate or length do not reach for it.
 
-    Parameters
-    ----------
-    channels : mapping of str to (n,) float
-        Signals by channel name.
-    fs_hz : float
-        Sampling frequency [Hz].
-
-    Returns
-    -------
-    dict of str to float
-        `floor_roughness`: root mean square, over bins and channels, of the log density off its straight line over log
-        frequency. `floor_difference`, of two channels or more: of the log density off the mean over channels, each
-        channel's own mean taken off, so that gains do not count.
+    `floor_roughness`: root mean square, over bins and channels, of the log density off its straight line over log
+    frequency. `floor_difference`, of two channels or more: of the log density off the mean over channels, each
+    channel's own mean taken off, so that gains do not count.
     """
-    return _roughness(fs_hz, _densities(channels, fs_hz))
-
-
-def _roughness(fs_hz: float, densities: Densities) -> dict[str, float]:
     if fs_hz / RATE_PER_BANDWIDTH < BAND_HZ[1]:
         return {}
     found = [_log_floor(*density) for density in densities.values()]
@@ -86,13 +72,17 @@ def _roughness(fs_hz: float, densities: Densities) -> dict[str, float]:
 
 
 def floor_features(channels: Mapping[str, np.ndarray], fs_hz: float) -> dict[str, float]:
-    """Return what distances take from between the lines: `noise_floor` and `floor_roughness`."""
-    densities = _densities(channels, fs_hz)
+    """Return what distances take from between the lines: `noise_floor` and `floor_roughness`.
+
+    Parameters
+    ----------
+    channels : mapping of str to (n,) float
+        Signals [m/s^2] by channel name.
+    fs_hz : float
+        Sampling frequency [Hz].
+    """
+    densities = {name: spectral_density(np.asarray(x, dtype=np.float64), fs_hz) for name, x in channels.items()}
     return _medians(fs_hz, densities) | _roughness(fs_hz, densities)
-
-
-def _densities(channels: Mapping[str, np.ndarray], fs_hz: float) -> Densities:
-    return {name: spectral_density(np.asarray(signal, dtype=np.float64), fs_hz) for name, signal in channels.items()}
 
 
 def _log_floor(frequency_hz: np.ndarray, density: np.ndarray) -> np.ndarray:
@@ -130,25 +120,11 @@ def spectral_density(signal: np.ndarray, fs_hz: float) -> tuple[np.ndarray, np.n
     return np.arange(density.size) * (fs_hz / size), density
 
 
-def noise_floor(channels: Mapping[str, np.ndarray], fs_hz: float) -> dict[str, float]:
+def _medians(fs_hz: float, densities: Densities) -> dict[str, float]:
     """Return the median spectral density [(m/s^2)^2/Hz] of every octave and channel by name.
 
-    Parameters
-    ----------
-    channels : mapping of str to (n,) float
-        Signals [m/s^2] by channel name.
-    fs_hz : float
-        Sampling frequency [Hz].
-
-    Returns
-    -------
-    dict of str to float
-        `noise_floor_100hz__lid` is the octave from 100 Hz on in channel `lid`.
+    `noise_floor_100hz__lid` is the octave from 100 Hz on in channel `lid`.
     """
-    return _medians(fs_hz, _densities(channels, fs_hz))
-
-
-def _medians(fs_hz: float, densities: Densities) -> dict[str, float]:
     found = {}
     for channel, (frequency_hz, density) in densities.items():
         for low_hz, high_hz in octaves_hz(fs_hz):

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnostics.signal.best_path import NOWHERE, path_cells, path_totals
+
 WANDER = 1e-3
 """Relative change of speed within a second that is usual."""
 
@@ -135,26 +137,13 @@ class _Search:
 
     def totals(self, start: np.ndarray) -> np.ndarray:
         """Return, by time and correction, the most nats that a path which ends there collects, (m, grid)."""
-        from scipy.ndimage import grey_dilation
-
         assert self.fit is not None
-        totals = self.fit.copy()
-        totals[0] = np.maximum(start, -1e9)
-        for n in range(1, len(totals)):
-            totals[n] += grey_dilation(totals[n - 1], structure=-self.price, mode="constant", cval=-1e9)
-        return totals
+        return path_totals(np.vstack([np.maximum(start, NOWHERE), self.fit[1:]]), self.price)
 
     def path(self, totals: np.ndarray) -> np.ndarray:
         """Return the best path (m,) [pitches] from its end back."""
-        reach = self.price.size // 2
         cell = int(totals[-1].argmax())
-        cells = [cell]
-        for total in totals[-2::-1]:
-            low = max(0, cell - reach)
-            near = total[low : cell + reach + 1]
-            first = low - (cell - reach)
-            cell = low + int(np.argmax(near - self.price[first : first + near.size]))
-            cells.append(cell)
+        cells = [cell, *path_cells(totals[-2::-1], self.price, cell)]
         return np.asarray(self.grid[cells[::-1]])
 
 

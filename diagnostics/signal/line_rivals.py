@@ -7,7 +7,6 @@ derived.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -279,8 +278,3 @@ def _behind_shaft(
 
 def _behind(rival: Rival) -> float:
     return rival.behind
-
-
-def least_behind(found: Mapping[str, Rival], kinds: tuple[str, ...]) -> Rival | None:
-    """Return the nearest rival of some kinds."""
-    return min((found[kind] for kind in kinds if kind in found), key=_behind, default=None)

@@ -23,7 +23,7 @@ from diagnostics.signal.joint_phase import (
     smooth_speed,
 )
 from diagnostics.signal.line_envelopes import LineEnvelopes
-from diagnostics.signal.line_rivals import OrderLevels, Rival, fit_nats, least_behind, order_levels, rivals
+from diagnostics.signal.line_rivals import OrderLevels, Rival, fit_nats, order_levels, rivals
 from diagnostics.signal.speed_paths import SpeedPath, followed_again, speed_paths
 from siggen.errors import UsageError
 
@@ -138,12 +138,6 @@ class ShaftAngle:
         """Times of whole turns [s], (turns,)."""
         whole = np.arange(np.ceil(self.turns[0]), np.floor(self.turns[-1]) + 1.0)
         return np.asarray(np.interp(whole, self.turns, self.time_s))
-
-    @property
-    def ahead_nats(self) -> float:
-        """How far other speeds in the range and other curves lie behind."""
-        nearest = least_behind(self.others, ("speed", "curve"))
-        return nearest.behind if nearest else float("inf")
 
     @property
     def words(self) -> str:

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnostics.signal.best_path import path_cells, path_totals
+
 FRAME_TURNS = 6.0
 """Turns of the slower shaft in a frame: a Hann window of them parts its sidebands from the mesh lines."""
 
@@ -38,11 +40,10 @@ NONE_SAID = 0.6
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SpeedPath:
-    """A course of speed: (frames,) times [s] and speeds [Hz] of the first shaft, and the evidence it collects."""
+    """A course of speed: (frames,) times [s] and speeds [Hz] of the first shaft."""
 
     time_s: np.ndarray
     speed_hz: np.ndarray
-    evidence: float
 
 
 def line_orders(teeth: tuple[int, int], harmonics: int, sidebands: int = SIDEBANDS) -> tuple[np.ndarray, np.ndarray]:
@@ -104,8 +105,8 @@ def speed_paths(
     hop_s = float(frames.time_s[1] - frames.time_s[0]) if frames.time_s.size > 1 else frame_s
     for wander in WANDERS:
         deviation = wander * np.sqrt(hop_s) / step
-        for value, path in _best_paths(evidence, deviation, FARTHEST_PER_HOP / step, lobe, PATHS):
-            yield SpeedPath(frames.time_s, speeds[path], value)
+        for path in _best_paths(evidence, deviation, FARTHEST_PER_HOP / step, lobe, PATHS):
+            yield SpeedPath(frames.time_s, speeds[path])
 
 
 def followed_again(
@@ -133,8 +134,8 @@ def followed_again(
     evidence[away > SHORT_FRAME_AROUND] = -1e3
     lobe = max(3, int(2.0 / (frame_s * teeth[0] * float(speeds.mean())) / step))
     hop_s = frame_s / HOPS_PER_FRAME
-    value, best = _best_paths(evidence, WANDERS[0] * np.sqrt(hop_s) / step, FARTHEST_PER_HOP / step, lobe, 1)[0]
-    return SpeedPath(frames.time_s, speeds[best], value)
+    (best,) = _best_paths(evidence, WANDERS[0] * np.sqrt(hop_s) / step, FARTHEST_PER_HOP / step, lobe, 1)
+    return SpeedPath(frames.time_s, speeds[best])
 
 
 def _slower(speed_hz: float, teeth: tuple[int, int]) -> float:
@@ -184,10 +185,8 @@ def _frames(signals: np.ndarray, fs_hz: float, frame_s: float, slower_hz: float,
     return _Frames((starts + 0.5 * size) / fs_hz, level, cell_hz)
 
 
-def _best_paths(
-    evidence: np.ndarray, deviation: float, farthest: float, lobe: int, most: int
-) -> list[tuple[float, np.ndarray]]:
-    """Return value and speed cells (frames,) of the best paths that lie apart in the middle frame.
+def _best_paths(evidence: np.ndarray, deviation: float, farthest: float, lobe: int, most: int) -> list[np.ndarray]:
+    """Return the speed cells (frames,) of the best paths that lie apart in the middle frame.
 
     `deviation`: usual change per frame, in cells; `lobe`: cells within which two paths are one.
     """
@@ -196,37 +195,13 @@ def _best_paths(
     reach = int(max(2, min(farthest, 8 * deviation + 2)))
     steps = np.abs(np.arange(-reach, reach + 1)) / deviation
     price = np.where(steps < LINEAR_FROM, 0.5 * steps**2, LINEAR_FROM * (steps - 0.5 * LINEAR_FROM)).astype(np.float32)
-    ahead = _totals(evidence, price)
-    back = _totals(evidence[::-1], price)[::-1]
+    ahead = path_totals(evidence, price)
+    back = path_totals(evidence[::-1], price)[::-1]
     middle = len(evidence) // 2
     through = ahead[middle] + back[middle] - evidence[middle]
     peaks = np.flatnonzero(through == maximum_filter1d(through, 2 * lobe + 1))
-    peaks = peaks[np.argsort(-through[peaks])][:most]
-    return [(float(through[peak]), _traced(ahead, back, price, middle, int(peak))) for peak in peaks]
-
-
-def _totals(evidence: np.ndarray, price: np.ndarray) -> np.ndarray:
-    """Return, by frame and speed, the most that a path which ends there collects."""
-    from scipy.ndimage import grey_dilation
-
-    total = evidence.copy()
-    for frame in range(1, len(total)):
-        total[frame] += grey_dilation(total[frame - 1], structure=-price, mode="constant", cval=-np.float32(1e9))
-    return total
-
-
-def _traced(ahead: np.ndarray, back: np.ndarray, price: np.ndarray, middle: int, peak: int) -> np.ndarray:
-    reach = price.size // 2
-
-    def steps(totals: np.ndarray) -> Iterator[int]:
-        cell = peak
-        for total in totals:
-            low = max(0, cell - reach)
-            near = total[low : cell + reach + 1]
-            first = low - (cell - reach)
-            cell = low + int(np.argmax(near - price[first : first + near.size]))
-            yield cell
-
-    before = list(steps(ahead[:middle][::-1]))[::-1]
-    after = list(steps(back[middle + 1 :]))
-    return np.array([*before, peak, *after], dtype=np.int64)
+    found = []
+    for peak in peaks[np.argsort(-through[peaks])][:most].tolist():
+        before = list(path_cells(ahead[:middle][::-1], price, peak))[::-1]
+        found.append(np.array([*before, peak, *path_cells(back[middle + 1 :], price, peak)], dtype=np.int64))
+    return found

@@ -152,8 +152,6 @@ class ChangeScore:
         Root mean square of the largest tenth of the deviations, in spreads.
     limit : float
         Score from which it is called a change.
-    rank_p, normal_p : float
-        Share of healthy recordings that stand as far off: by rank, and by the references' spread of log scores.
     references : (n,) float64
         Scores of the references, each against the others and the new one.
     deviation : (features,) float64
@@ -165,8 +163,6 @@ class ChangeScore:
 
     score: float
     limit: float
-    rank_p: float
-    normal_p: float
     references: np.ndarray
     deviation: np.ndarray
     mean: np.ndarray
@@ -223,8 +219,6 @@ def change_score(
     return ChangeScore(
         score,
         max(rank_limit, normal_limit) if few else rank_limit,
-        rank_p,
-        normal_p,
         references,
         deviation,
         mean,

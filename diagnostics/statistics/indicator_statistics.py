@@ -513,25 +513,11 @@ def best_by_state(found: Sequence[Separability]) -> dict[str, Separability]:
     return best
 
 
-def weighted_spearman(first: np.ndarray, second: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Return Spearman's rank correlation for every row of weights; NaN where one side does not vary.
-
-    Parameters
-    ----------
-    first, second : (n,) float64
-        Without NaN.
-    weights : (b, n) float64
-        Weights of the records.
-
-    Returns
-    -------
-    (b,) float64
-    """
-    return rank_correlation(centred_ranks(first, weights), centred_ranks(second, weights))
-
-
 def rank_correlation(first: CentredRanks, second: CentredRanks) -> np.ndarray:
-    """Return what `weighted_spearman` does of ranks of the same records and weights."""
+    """Return Spearman's rank correlation for every row of weights, (b,), from ranks of the same records and weights.
+
+    NaN where one side does not vary.
+    """
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.asarray((first.weighted * second.ranks).sum(axis=1) / np.sqrt(first.spread * second.spread))
 

@@ -72,31 +72,21 @@ def _length_and_slope(ahead: float) -> tuple[float, float]:
     return c, c / root
 
 
-@entry(cache=True, _nrt=False, error_model="numpy")
-def half_plane_factor(ahead: float) -> float:
-    """Return G at d̂ = `ahead`: sink at an edge of a half plane over κF."""
-    if ahead >= 1.0:
-        return 0.0
-    c = half_length(ahead)
-    return -log(c) + (3.0 * c * c - 1.0) * (c * c - 1.0) / (4.0 * c * c)
-
-
-@entry(cache=True, _nrt=False, error_model="numpy")
-def notch_factor(ahead: float, depth: float, rounding: float = 0.0) -> float:
-    """Return N: what a notch behind the edge adds to G.
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _notch_and_slope(ahead: float, depth: float, rounding: float, length: tuple[float, float]) -> tuple[float, float]:
+    """Return N, what a notch behind the edge adds to G, and dN/d(ln u).
 
     Parameters
     ----------
     ahead : d̂
     depth : D/a; 0 for none
     rounding : ε = r/(R + r) of the edge, which keeps the load at least 2/3 √ε a from the corner
+    length : of `_length_and_slope`
+
+    Notes
+    -----
+    d̂ and D/a both fall as u^-½.
     """
-    return _notch_and_slope(ahead, depth, rounding, _length_and_slope(ahead))[0]
-
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _notch_and_slope(ahead: float, depth: float, rounding: float, length: tuple[float, float]) -> tuple[float, float]:
-    """Return N and dN/d(ln u), d̂ and D/a both falling as u^-½; `length` of `_length_and_slope`."""
     if depth <= 0.0 or ahead > 1e3:
         return 0.0, 0.0
     c, c_slope = length

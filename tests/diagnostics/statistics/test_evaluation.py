@@ -12,13 +12,14 @@ from hypothesis import strategies as st
 from diagnostics.statistics.evaluation import (
     Predictions,
     bootstrap_weights,
+    centred_ranks,
     interval,
     macro_auroc,
     scores,
     weighted_auc,
     weighted_midranks,
 )
-from diagnostics.statistics.indicator_statistics import weighted_spearman
+from diagnostics.statistics.indicator_statistics import rank_correlation
 
 ONE = np.ones((1, 40))
 
@@ -87,8 +88,9 @@ def test_spearman_agrees_with_scipy() -> None:
 
     first, _ = drawn(1)
     second, _ = drawn(2)
-    assert weighted_spearman(first, second, ONE)[0] == pytest.approx(spearmanr(first, second).statistic)
-    assert math.isnan(weighted_spearman(first, np.zeros(40), ONE)[0])
+    ranks, others, none = (centred_ranks(values, ONE) for values in (first, second, np.zeros(40)))
+    assert rank_correlation(ranks, others)[0] == pytest.approx(spearmanr(first, second).statistic)
+    assert math.isnan(rank_correlation(ranks, none)[0])
 
 
 def test_macro_auroc_agrees_with_scikit_learn() -> None:

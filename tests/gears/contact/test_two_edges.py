@@ -6,7 +6,7 @@ from math import pi, sqrt
 
 import pytest
 
-from siggen.mesh.contact_edges import NO_EDGE, gap_sink, half_plane_factor
+from siggen.mesh.contact_edges import NO_EDGE, edge_terms, gap_sink
 from tests.reference.contact import plane_contact
 
 KAPPA = 4.0 * (1.0 - 0.3**2) / (pi * 206e9)
@@ -89,9 +89,8 @@ def test_the_coupled_law_with_a_notch_against_finite_elements(case, expected):
 
 def test_one_edge_is_the_limit_of_a_far_second_one():
     load = 60e3 * KAPPA
-    width = sqrt(2.0 * RADIUS * load)
     one = gap_sink(0.3e-3, NO_EDGE, 0.0, 0.0, RADIUS, 0.0, load)
-    assert one.sink_m == pytest.approx(load * half_plane_factor(-0.3e-3 / width), rel=1e-12)
+    assert one.sink_m == pytest.approx(load * edge_terms(-0.3e-3, 0.0, RADIUS, 0.0, load).factor, rel=1e-12)
     assert gap_sink(0.3e-3, 5e-3, 0.0, 0.0, RADIUS, 0.0, load) == one
     assert gap_sink(-NO_EDGE, -NO_EDGE, 0.0, 0.0, RADIUS, 0.0, load).sink_m == 0.0
 
