@@ -180,8 +180,30 @@ def write_facts(
     write_file(folder / FACTS_FILE, sealed(content))
 
 
-def read_facts(folder: Path) -> tuple[ModelFacts, TrainingDistance, TrainingDistance | None]:
-    """Read `model.json`: facts, distance, and the distance of the healthy-referenced variant where there is one.
+@dataclass(frozen=True, slots=True)
+class ModelContent:
+    """What `model.json` says.
+
+    Attributes
+    ----------
+    facts : ModelFacts
+    distance, referenced : TrainingDistance
+        The second of the healthy-referenced variant; None where there is none.
+    accuracy : dict of str to Interval
+        Of every classifier on the test specimens.
+    files : dict of str to str
+        SHA-256 of every file beside it, by name.
+    """
+
+    facts: ModelFacts
+    distance: TrainingDistance
+    referenced: TrainingDistance | None
+    accuracy: dict[str, Interval]
+    files: dict[str, str]
+
+
+def read_content(folder: Path) -> ModelContent:
+    """Read `model.json`.
 
     Raises
     ------
@@ -190,78 +212,35 @@ def read_facts(folder: Path) -> tuple[ModelFacts, TrainingDistance, TrainingDist
     """
     path = folder / FACTS_FILE
     try:
-        content = _content(path)
+        stored = path.read_bytes()
+        if (found := json.loads(stored).get("format")) != FORMAT:
+            raise UsageError(
+                f"{path}: received format {found!r}; allowed is {FORMAT!r}, which says what gears and meshes are "
+                f"called. Train again: siggen-diagnostics report SET --out {path.parent}"
+            )
+        content = unsealed(FACTS_FILE, stored)
         facts = {name: _tuples(value) for name, value in content["facts"].items()}
         check_kind(facts["class_kind"])
         facts["names"] = tuple(MeshNames(*mesh) for mesh in facts["names"])
         referenced = content["referenced_distance"]
-        return (
+        return ModelContent(
             ModelFacts(**facts),
             distance_from_facts(content["distance"]),
             distance_from_facts(referenced) if referenced else None,
+            {name: _interval(score["accuracy"]) for name, score in content["scores"]["test"].items()},
+            dict(content["files"]),
         )
     except UsageError:
         raise
     except (OSError, ValueError, KeyError, TypeError, AttributeError, VerificationError) as error:
-        raise _unusable(path, error) from error
-
-
-def read_accuracy(folder: Path) -> dict[str, Interval]:
-    """Read the accuracy of every classifier on the test specimens from `model.json`.
-
-    Raises
-    ------
-    UsageError
-        If it is missing or damaged.
-    """
-    path = folder / FACTS_FILE
-    try:
-        tested = _content(path)["scores"]["test"]
-        return {name: _interval(score["accuracy"]) for name, score in tested.items()}
-    except UsageError:
-        raise
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, VerificationError) as error:
-        raise _unusable(path, error) from error
-
-
-def read_hashes(folder: Path) -> dict[str, str]:
-    """Read the SHA-256 of every file of a model from `model.json`.
-
-    Raises
-    ------
-    UsageError
-        If it is missing or damaged.
-    """
-    path = folder / FACTS_FILE
-    try:
-        return dict(_content(path)["files"])
-    except UsageError:
-        raise
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, VerificationError) as error:
-        raise _unusable(path, error) from error
-
-
-def _content(path: Path) -> dict[str, Any]:
-    """Return what `model.json` says, if it is whole and of a format that is read."""
-    stored = path.read_bytes()
-    content: dict[str, Any] = json.loads(stored)
-    found = content.get("format")
-    if found != FORMAT:
         raise UsageError(
-            f"{path}: received format {found!r}; allowed is {FORMAT!r}, which says what gears and meshes are "
-            f"called. Train again: siggen-diagnostics report SET --out {path.parent}"
-        )
-    return unsealed(FACTS_FILE, stored)
+            f"{path}: cannot be used ({error}); give the folder that `siggen-diagnostics report` wrote with this "
+            "version"
+        ) from error
 
 
 def _interval(numbers: dict[str, float | None]) -> Interval:
     return Interval(**{name: math.nan if value is None else float(value) for name, value in numbers.items()})
-
-
-def _unusable(path: Path, error: Exception) -> UsageError:
-    return UsageError(
-        f"{path}: cannot be used ({error}); give the folder that `siggen-diagnostics report` wrote with this version"
-    )
 
 
 def _tuples(value: Any) -> Any:

@@ -22,9 +22,7 @@ from diagnostics.prediction.model_facts import (
     REFERENCED,
     ModelFacts,
     check_files,
-    read_accuracy,
-    read_facts,
-    read_hashes,
+    read_content,
 )
 from diagnostics.prediction.training_distance import TrainingDistance
 from diagnostics.scoring.prediction_file import MODELS_FOLDER
@@ -45,72 +43,6 @@ if TYPE_CHECKING:
 NETWORK_FILE = "cnn.safetensors"
 LOADED_ONCE = ("diagnostics.training.skops_io",)
 """What the process that tries models loads before it has limits."""
-
-
-@dataclass(frozen=True, slots=True)
-class ModelPart:
-    """A file of a model folder: its name, the identity of the set it was trained on, its classes and channels."""
-
-    file: str
-    identity: str
-    classes: tuple[str, ...]
-    channels: tuple[str, ...]
-
-
-def classifier_part(file: str, identity: str, classifier: FeatureClassifier) -> ModelPart:
-    """Return what the names beside a classifier on indicators say; channels are those of its features."""
-    channels = dict.fromkeys(name.split("__", 1)[1] for name in classifier.features if "__" in name)
-    return ModelPart(file, identity, classifier.classes, tuple(channels))
-
-
-def check_parts(folder: Path, facts: ModelFacts, parts: list[ModelPart]) -> None:
-    """Check that all files were trained on what `model.json` names.
-
-    Raises
-    ------
-    UsageError
-        Naming the file that differs, in what, and the way out.
-    """
-    for part in parts:
-        differences = [
-            f"{name} {_listed(own)} instead of {_listed(expected)}"
-            for name, own, expected in (
-                ("identity of the set", (part.identity,), (facts.identity,)),
-                ("classes", part.classes, facts.classes),
-                ("channels", tuple(sorted(part.channels)), tuple(sorted(facts.channels))),
-            )
-            if own != expected
-        ]
-        if differences:
-            raise _foreign(folder, part.file, f"does not belong to {FACTS_FILE} beside it", differences)
-
-
-def check_size(folder: Path, file: str, classifier: FeatureClassifier) -> None:
-    """Check that a pipeline takes as many features as the names beside it, and knows no further classes.
-
-    Raises
-    ------
-    UsageError
-        If the pipeline is that of another model.
-    """
-    takes, named = int(classifier.pipeline.n_features_in_), len(classifier.features)
-    highest, states = int(max(classifier.pipeline.classes_)), len(classifier.classes)
-    differences = [f"takes {takes} features instead of {named}"] if takes != named else []
-    if highest >= states:
-        differences.append(f"knows class {highest + 1} of {states}")
-    if differences:
-        raise _foreign(folder, file, "does not belong to the names beside it", differences)
-
-
-def _foreign(folder: Path, file: str, what: str, differences: list[str]) -> UsageError:
-    return UsageError(
-        f"{folder / file}: {what} ({'; '.join(differences)}). The files of a model are written together; copy the "
-        f"folder as a whole or train again: siggen-diagnostics report SET --out {folder}"
-    )
-
-
-def _listed(names: tuple[str, ...]) -> str:
-    return ", ".join(name[:12] if len(name) == 64 else name for name in names) or "none"
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,25 +129,25 @@ def written_model(folder: Path, own: Sequence[OwnIndicator] | None) -> ReleasedM
 
     Without own indicators those that it needs are not looked for.
     """
-    check_files(folder, read_hashes(folder))
-    facts, distance, referenced = read_facts(folder)
-    accuracy = read_accuracy(folder)
-    loadable, note = _loadable(folder, {NETWORK_FILE: NETWORK in accuracy})
+    content = read_content(folder)
+    check_files(folder, content.files)
+    loadable, note = _loadable(folder, {NETWORK_FILE: NETWORK in content.accuracy})
     network = _network(folder) if NETWORK_FILE in loadable else None
-    classifiers = {prefix: load_classifier(folder, prefix) for prefix in ("", *([REFERENCED] if referenced else []))}
-    _check_folder(folder, facts, classifiers, network)
+    prefixes = ("", *([REFERENCED] if content.referenced else []))
+    classifiers = {prefix: load_classifier(folder, prefix) for prefix in prefixes}
+    _check_folder(folder, content.facts, classifiers, network)
     return ReleasedModel(
         folder=folder,
-        facts=facts,
+        facts=content.facts,
         settings=load_settings(folder),
         classifier=classifiers[""],
-        distance=distance,
+        distance=content.distance,
         referenced_classifier=classifiers.get(REFERENCED),
-        referenced_distance=referenced,
+        referenced_distance=content.referenced,
         network=network,
-        accuracy=accuracy,
+        accuracy=content.accuracy,
         note=note,
-        own=() if own is None else _own_of(folder, facts, classifiers, own),
+        own=() if own is None else _own_of(folder, content.facts, classifiers, own),
     )
 
 
@@ -264,14 +196,37 @@ def _check_folder(
     classifiers: Mapping[str, FeatureClassifier],
     network: TrainedNetwork | None,
 ) -> None:
-    parts = []
-    for prefix, classifier in classifiers.items():
-        check_size(folder, f"{prefix}{CLASSIFIER_FILE}", classifier)
-        identity = classifier_identity(folder, prefix)
-        parts.append(classifier_part(f"{prefix}{NAMES_FILE}", identity, classifier))
-    if network:
-        parts.append(ModelPart(NETWORK_FILE, network.identity, network.classes, network.channels))
-    check_parts(folder, facts, parts)
+    """Check that all files were trained on what `model.json` names, and that pipelines take the features beside them.
+
+    Raises
+    ------
+    UsageError
+        Naming the file that differs, in what, and the way out.
+    """
+    parts = [(NETWORK_FILE, network.identity, network.classes, network.channels)] if network else []
+    for prefix, one in classifiers.items():
+        takes, highest = int(one.pipeline.n_features_in_), int(max(one.pipeline.classes_))
+        if takes != len(one.features) or highest >= len(one.classes):
+            differences = f"takes {takes} features instead of {len(one.features)}, class {highest + 1} of "
+            raise _foreign(folder, f"{prefix}{CLASSIFIER_FILE}", "the names", f"{differences}{len(one.classes)}")
+        channels = tuple(dict.fromkeys(name.split("__", 1)[1] for name in one.features if "__" in name))
+        parts.append((f"{prefix}{NAMES_FILE}", classifier_identity(folder, prefix), one.classes, channels))
+    for file, identity, classes, channels in parts:
+        for name, own, expected in (
+            ("identity of the set", (identity,), (facts.identity,)),
+            ("classes", classes, facts.classes),
+            ("channels", tuple(sorted(channels)), tuple(sorted(facts.channels))),
+        ):
+            if own != expected:
+                said = (", ".join(one[:12] if len(one) == 64 else one for one in names) for names in (own, expected))
+                raise _foreign(folder, file, FACTS_FILE, f"{name} {' instead of '.join(said)}")
+
+
+def _foreign(folder: Path, file: str, beside: str, differences: str) -> UsageError:
+    return UsageError(
+        f"{folder / file}: does not belong to {beside} beside it ({differences}). The files of a model are written "
+        f"together; copy the folder as a whole or train again: siggen-diagnostics report SET --out {folder}"
+    )
 
 
 def _loadable(folder: Path, scored: Mapping[str, bool]) -> tuple[tuple[str, ...], str]:

@@ -10,7 +10,6 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -154,32 +153,21 @@ def _referenced(training: Training, whole: FeatureMatrix, gears: GearNames) -> t
     return ReferencedVariant(found.classifier, distance, judged.scores, distances, found.split.test), ""
 
 
-def release_scores(training: Training, found: Release) -> dict[str, Any]:
-    """Return the scores that `model.json` carries."""
-    scored = {judged.name: judged.scores for judged in training.judged}
-    if found.referenced:
-        scored["healthy_referenced"] = found.referenced.scores
-    return {
+def save_release(training: Training, found: Release, table: pa.Table, folder: Path) -> None:
+    """Write the variant's classifier under names that begin with `referenced_`, then `model.json` over all files."""
+    scored, variant = {judged.name: judged.scores for judged in training.judged}, found.referenced
+    if variant:
+        scored[REFERENCED_NAME] = variant.scores
+        save_classifier(variant.classifier, table_settings(table), found.facts.identity, folder, REFERENCED)
+    scores = {
         "test": {
             name: {"accuracy": score.accuracy.numbers(), "macro_auroc": score.macro_auroc.numbers()}
             for name, score in scored.items()
         },
         "test_records_outside": found.test_outside,
-        "referenced_test_records_outside": found.referenced_outside if found.referenced else None,
+        "referenced_test_records_outside": found.referenced_outside if variant else None,
     }
-
-
-def save_release(training: Training, found: Release, table: pa.Table, folder: Path) -> None:
-    """Write the variant's classifier under names that begin with `referenced_`, then `model.json` over all files."""
-    from diagnostics.indicators.classifier_table import table_settings
-    from diagnostics.training.feature_classifier import save_classifier
-
-    variant = found.referenced
-    if variant:
-        save_classifier(variant.classifier, table_settings(table), found.facts.identity, folder, REFERENCED)
-    write_facts(
-        found.facts, found.distance, variant.distance if variant else None, release_scores(training, found), folder
-    )
+    write_facts(found.facts, found.distance, variant.distance if variant else None, scores, folder)
 
 
 def model_card(training: Training, dataset: Dataset) -> str:
@@ -369,7 +357,7 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
     for name in (FACTS_FILE, *MODEL_FILES):
         # a network of an earlier run must not lie beside a card that does not know it
         (folder / name).unlink(missing_ok=True)
-    identity, notes = set_identity(dataset), []
+    identity, notes = str(dataset.manifest["identity"]), []
     save_classifier(training.classifier, table_settings(table), identity, folder)
     if training.network:
         from diagnostics.training.cnn import save_network
@@ -396,8 +384,3 @@ def _predicted(training: Training, table: pa.Table) -> list[pa.Table]:
         for name, mask, attribute in parts
         if (found := getattr(judged, attribute)) is not None
     ]
-
-
-def set_identity(dataset: Dataset) -> str:
-    """Return the identity of a set, a SHA-256 of its configuration."""
-    return str(dataset.manifest["identity"])

@@ -230,11 +230,11 @@ class TrainingDistance:
         every = [np.abs(part.standardised(own, speed_hz)).max(axis=1) for part, own in self._columns(logs)]
         return np.asarray(np.max(every, axis=0))
 
-    def strangest(self, logs: np.ndarray, speed_hz: float, count: int = 3) -> list[tuple[str, float]]:
-        """Return the features of one record (k,) farthest off the line, in spreads."""
+    def strangest(self, logs: np.ndarray, speed_hz: float) -> list[tuple[str, float]]:
+        """Return the three features of one record (k,) farthest off the line, in spreads."""
         speed = np.array([speed_hz])
         off = np.concatenate([part.standardised(own, speed)[0] for part, own in self._columns(logs[None, :])])
-        return [(self.features[k], float(off[k])) for k in np.argsort(-np.abs(off))[:count]]
+        return [(self.features[k], float(off[k])) for k in np.argsort(-np.abs(off))[:3]]
 
     def _columns(self, logs: np.ndarray) -> list[tuple[DistancePart, np.ndarray]]:
         ends = np.cumsum([len(part.features) for part in self.parts])

@@ -20,7 +20,7 @@ from diagnostics.judging.sets import OtherSet, check_other_set, set_table
 from diagnostics.loader.window_index import StreamSettings, window_index
 from diagnostics.page.blocks import Page
 from diagnostics.page.template import page_html
-from diagnostics.prediction.model_facts import read_facts
+from diagnostics.prediction.model_facts import read_content
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.report.classifier_tables import detection_blocks
 from diagnostics.report.sentences import scores_sentence
@@ -135,6 +135,6 @@ def test_page_card_and_model_say_what_the_healthy_class_holds(
     card = (tmp_path / "model_card.md").read_text(encoding="utf-8")
     assert "classes: healthy, slight, severe (healthy: records of healthy, healthy_again)" in card
     assert "accuracy of 0.50 and a balanced accuracy of 0.33" in card
-    assert read_facts(tmp_path)[0].classes == ("healthy", "slight", "severe")
+    assert read_content(tmp_path).facts.classes == ("healthy", "slight", "severe")
     named = json.loads((tmp_path / "feature_names.json").read_text(encoding="utf-8"))
     assert named["classes"] == ["healthy", "slight", "severe"]
