@@ -9,13 +9,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from diagnostics.bench.steps import (
-        benchmark_baselines,
-        commit_benchmark,
-        leaderboard,
-        make_benchmark,
-        reveal_benchmark,
-    )
+    from diagnostics.bench.leaderboard import leaderboard
+    from diagnostics.bench.making import commit_benchmark, make_benchmark, reveal_benchmark
+    from diagnostics.bench.questions import benchmark_baselines
     from diagnostics.indicators.classifier_table import table
     from diagnostics.judging.alarms import evaluate
     from diagnostics.loader.window_arrays import windows
@@ -43,11 +39,11 @@ __all__ = [
 ]
 
 _HOMES = {
-    "make_benchmark": "diagnostics.bench.steps",
-    "commit_benchmark": "diagnostics.bench.steps",
-    "reveal_benchmark": "diagnostics.bench.steps",
-    "benchmark_baselines": "diagnostics.bench.steps",
-    "leaderboard": "diagnostics.bench.steps",
+    "make_benchmark": "diagnostics.bench.making",
+    "commit_benchmark": "diagnostics.bench.making",
+    "reveal_benchmark": "diagnostics.bench.making",
+    "benchmark_baselines": "diagnostics.bench.questions",
+    "leaderboard": "diagnostics.bench.leaderboard",
     "open_benchmark": "diagnostics.scoring.benchmark",
     "score_benchmark": "diagnostics.scoring.benchmark_scores",
     "score": "diagnostics.scoring.score",

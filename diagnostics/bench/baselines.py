@@ -16,12 +16,11 @@ from functools import partial
 import numpy as np
 import pyarrow as pa
 
-from diagnostics.audit.averaged_lines import Bank, band_bank, kurtogram_maximum, line_array, residual_lines
+from diagnostics.audit.averaged_lines import band_bank, kurtogram_maximum, line_array, residual_lines
 from diagnostics.audit.detectability import ADDED, LEVELS, PLAIN
 from diagnostics.audit.signal_attackers import convolution_features, level_waves, over_channels
 from diagnostics.base.extras import missing_packages
 from diagnostics.base.process_pool import process_pool
-from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.classifier_table import check_table, classifier_table, feature_matrix
@@ -30,26 +29,44 @@ from diagnostics.indicators.table import record_table
 from diagnostics.judging.evaluation import Design, Entry, pooled_scores
 from diagnostics.judging.learners import BestColumn, Odds
 from diagnostics.records.state_classes import HEALTHY, SHAM
-from diagnostics.scoring.benchmark import LEARN, Benchmark
+from diagnostics.scoring.benchmark import Benchmark
 from diagnostics.scoring.detect import DAMAGE
 from diagnostics.scoring.prediction_file import CLASSIFIER, RECORD
 from diagnostics.training.average_rows import AveragedRecords, padded_lines
 from diagnostics.training.feature_classifier import DEFAULT_STRENGTH
 from diagnostics.training.referenced import log_values
 from diagnostics.training.splits import SpecimenSplit
-from siggen.dataset.reading import Dataset
 
 CHUNK = 400
 """Records whose bands are taken at once."""
 
 
 @dataclass(frozen=True, slots=True)
-class PartRecords:
-    """Records of one set: indicators with labels, averaged lines, row of each one's reference or -1, label of teeth."""
+class BenchRecords:
+    """Records of all sets, those to learn from first.
+
+    Attributes
+    ----------
+    matrix : FeatureMatrix
+        Indicators with labels.
+    lines : (records, channels, orders) complex128
+        Averaged lines, of the orders that those to learn from have.
+    reference : (records,) int
+        Row of the first healthy record of the gearbox at its operating point, -1 for itself.
+    asked : (records,) bool
+        Records to learn from, and those of the split test of test parts.
+    learn : int
+        How many records are to learn from.
+    channels : tuple of str
+    teeth : str
+        Label of the teeth of the shaft that was averaged.
+    """
 
     matrix: FeatureMatrix
-    waveforms: list[list[np.ndarray]]
+    lines: np.ndarray
     reference: np.ndarray
+    asked: np.ndarray
+    learn: int
     channels: tuple[str, ...]
     teeth: str
 
@@ -92,24 +109,25 @@ class SeenRecords:
         return np.asarray(self.matrix.labels["record_id"][self.learn :])
 
 
-def benchmark_records(benchmark: Benchmark, workers: int, stage: Stage) -> tuple[PartRecords, ...]:
-    """Return the records of all sets, those to learn from first; indicators from some processes."""
-    sets = [(LEARN, benchmark.learn()), *((name, benchmark.part(name)) for name in benchmark.parts)]
-    return tuple(_part(name, dataset, workers, stage) for name, dataset in sets)
+def benchmark_records(benchmark: Benchmark, workers: int) -> BenchRecords:
+    """Return the records of all sets of a benchmark; indicators from some processes."""
+    learn = benchmark.learn()
+    first = record_table(learn, workers=workers)
+    check_table(first, learn)  # test records are answered whatever they are
+    tables = [first, *(record_table(benchmark.part(name), workers=workers) for name in benchmark.parts)]
+    matrices = [feature_matrix(classifier_table(table)) for table in tables]
+    labels = {name: np.concatenate([one.labels[name] for one in matrices]) for name in matrices[0].labels}
+    matrix = replace(matrices[0], values=np.concatenate([one.values for one in matrices]), labels=labels)
+    waveforms = [row for table in tables for row in table.complex_rows("waveform")]
+    count = len(matrices[0].values)
+    orders = max(lines.size for row in waveforms[:count] for lines in row)
+    asked = (np.arange(len(matrix.values)) < count) | (labels["split"] == "test")
+    lines = line_array(waveforms)[..., : max(orders, 1)]
+    return BenchRecords(matrix, lines, _references(labels), asked, count, first.channels, first.teeth[0])
 
 
-def _part(name: str, dataset: Dataset, workers: int, stage: Stage) -> PartRecords:
-    with stage(f"indicators, {name}", dataset.inventory.rows) as advance:
-        table = record_table(dataset, workers=workers, advance=advance)
-    if name == LEARN:
-        check_table(table, dataset)  # test records are answered whatever they are
-    matrix = feature_matrix(classifier_table(table))
-    return PartRecords(matrix, table.complex_rows("waveform"), _references(matrix), table.channels, table.teeth[0])
-
-
-def _references(matrix: FeatureMatrix) -> np.ndarray:
+def _references(labels: Mapping[str, np.ndarray]) -> np.ndarray:
     """Return the row of the first healthy record of each one's gearbox and operating point; -1 for itself."""
-    labels = matrix.labels
     first: dict[tuple[int, int], int] = {}
     places = list(zip(labels["specimen_id"].tolist(), labels["operating_point_id"].tolist(), strict=True))
     for row in np.flatnonzero((labels["fault"] == HEALTHY) & (labels["state"] != SHAM)).tolist():
@@ -118,79 +136,40 @@ def _references(matrix: FeatureMatrix) -> np.ndarray:
     return np.where(found == np.arange(found.size), -1, found)
 
 
-def seen_records(parts: tuple[PartRecords, ...], *, referenced: bool) -> SeenRecords:
+def seen_records(records: BenchRecords, *, referenced: bool) -> SeenRecords:
     """Return what baselines see; records without a reference are left out if asked for.
 
     Parameters
     ----------
-    parts : tuple of PartRecords
-        As of `benchmark_records`.
+    records : BenchRecords
     referenced : bool
         Whether every record stands beside a healthy one of its gearbox.
     """
-    kept = [_kept(part, place, referenced) for place, part in enumerate(parts)]
-    learn = int(kept[0].sum())
-    labels = {
-        name: np.concatenate([part.matrix.labels[name][rows] for part, rows in zip(parts, kept, strict=True)])
-        for name in parts[0].matrix.labels
-    }
-    values = [_values(part, referenced)[rows] for part, rows in zip(parts, kept, strict=True)]
-    matrix = replace(parts[0].matrix, values=np.concatenate(values), labels=labels)
-    lines, beside = _lines(parts, kept, referenced)
-    teeth = labels[parts[0].teeth]
-    residual = residual_lines(lines, teeth)
-    known = None if beside is None else residual_lines(beside, teeth)
-    difference = residual if known is None else residual - known
-    averages = AveragedRecords(
-        padded_lines([list(row) for row in lines.astype(np.complex64)]),
-        teeth,
-        parts[0].channels,
-        None if beside is None else padded_lines([list(row) for row in beside.astype(np.complex64)]),
-    )
+    kept = np.flatnonzero(records.asked & (records.reference >= 0) if referenced else records.asked)
+    matrix, lines = records.matrix.rows(kept), records.lines[kept]
+    teeth, learn = matrix.labels[records.teeth], int((kept < records.learn).sum())
+    difference, known, beside = residual_lines(lines, teeth), None, None
+    if referenced:
+        reference = records.reference[kept]
+        logarithms = log_values(records.matrix.values)
+        matrix = replace(matrix, values=logarithms[kept] - logarithms[reference])
+        known = residual_lines(records.lines[reference], teeth)
+        difference, beside = difference - known, _as_averages(records.lines[reference])
     highest, bands = _in_chunks(difference, known)
     return SeenRecords(
         matrix=matrix,
         learn=learn,
-        damaged=np.asarray(labels["fault"][:learn] != HEALTHY),
+        damaged=np.asarray(matrix.labels["fault"][:learn] != HEALTHY),
         kurtogram=highest,
         bands=bands,
         convolutions=convolution_features(level_waves(difference, known), learn),
-        averages=averages,
+        averages=AveragedRecords(_as_averages(lines), teeth, records.channels, beside),
         referenced=referenced,
     )
 
 
-def _kept(part: PartRecords, place: int, referenced: bool) -> np.ndarray:
-    """Return the records to learn from, or to be asked about: of test parts those of the split test."""
-    asked = np.ones(part.reference.size, dtype=bool) if place == 0 else part.matrix.labels["split"] == "test"
-    return np.asarray(asked & (part.reference >= 0) if referenced else asked)
-
-
-def _values(part: PartRecords, referenced: bool) -> np.ndarray:
-    values = part.matrix.values
-    if not referenced:
-        return values
-    logarithms = log_values(values)
-    return np.asarray(logarithms - logarithms[part.reference])
-
-
-def _lines(
-    parts: tuple[PartRecords, ...], kept: list[np.ndarray], referenced: bool
-) -> tuple[np.ndarray, np.ndarray | None]:
-    """Return averaged lines of all records and of their references, with the orders that those to learn from have."""
-    every = [line_array(part.waveforms) for part in parts]
-    orders = every[0].shape[-1]
-    same = [_cut(one, orders) for one in every]
-    lines = np.concatenate([one[rows] for one, rows in zip(same, kept, strict=True)])
-    if not referenced:
-        return lines, None
-    beside = [one[part.reference[rows]] for one, part, rows in zip(same, parts, kept, strict=True)]
-    return lines, np.concatenate(beside)
-
-
-def _cut(lines: np.ndarray, orders: int) -> np.ndarray:
-    missing = max(orders - lines.shape[-1], 0)
-    return np.pad(lines[..., :orders], ((0, 0), (0, 0), (0, missing)))
+def _as_averages(lines: np.ndarray) -> np.ndarray:
+    return padded_lines([list(row) for row in lines.astype(np.complex64)])
 
 
 def _in_chunks(difference: np.ndarray, known: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
@@ -199,15 +178,9 @@ def _in_chunks(difference: np.ndarray, known: np.ndarray | None) -> tuple[np.nda
     for start in range(0, len(difference), CHUNK):
         rows = slice(start, start + CHUNK)
         highest.append(np.nanmean(kurtogram_maximum(difference[rows]), axis=1))
-        bank: Bank = band_bank(difference[rows], None if known is None else known[rows])
+        bank = band_bank(difference[rows], None if known is None else known[rows])
         bands.append(over_channels(bank)[0])
     return np.concatenate(highest), np.concatenate(bands)
-
-
-def only(seen: SeenRecords, columns: tuple[str, ...]) -> FeatureMatrix:
-    """Return the indicators whose names begin with some words, of every channel."""
-    names = [name for name in seen.matrix.names if name.partition("__")[0] in columns]
-    return replace(seen.matrix.columns(names))
 
 
 REFERENCE = "reference"
@@ -281,13 +254,18 @@ def entries(seen: SeenRecords, seed: int) -> list[Entry]:
         model = RidgeClassifierCV(np.logspace(-1, 5, 10), class_weight="balanced")
         return Odds(make_pipeline(StandardScaler(), model))
 
+    def named(*indicators: str) -> np.ndarray:
+        """Return the values of some indicators, of every channel."""
+        names = seen.matrix.names
+        return seen.matrix.values[:, [k for k, name in enumerate(names) if name.partition("__")[0] in indicators]]
+
     bands, convolutions = (np.where(np.isfinite(x), x, 0.0) for x in (seen.bands, seen.convolutions))
     lots = generator(seed, Purpose.PERMUTATION, CHANCE_OWNER).uniform(size=every.size)
     found = [
         Entry(CHANCE, AsItIs, lots, every),
-        Entry(RMS, logistic, only(seen, ("rms",)).values, every),
+        Entry(RMS, logistic, named("rms"), every),
         Entry(KURTOGRAM, AsItIs, seen.kurtogram, every),
-        Entry(SIX, logistic, only(seen, (*LEVELS, *PLAIN, *ADDED)).values, every),
+        Entry(SIX, logistic, named(*LEVELS, *PLAIN, *ADDED), every),
         Entry(BAND, partial(BestColumn, [str(k) for k in range(bands.shape[1])]), bands, every),
         Entry(BOOSTING, lambda: Odds(BoostingBaseline(seed, DEFAULT_TREES)), seen.matrix.values, every),
         Entry(CONVOLUTIONS, ridge, convolutions, every),
@@ -321,43 +299,29 @@ def stacked(seen: SeenRecords, known: Sequence[Entry], every: Mapping[str, np.nd
     return np.asarray(model.decision_function(np.stack([every[entry.name] for entry in known], axis=1)))
 
 
-def damage_predictions(benchmark: Benchmark, seed: int, workers: int, stage: Stage) -> Iterator[pa.Table]:
+def damage_predictions(benchmark: Benchmark, seed: int, workers: int) -> Iterator[pa.Table]:
     """Yield the rows of every baseline, alone and beside a healthy record; with two processes both at once."""
-    parts = benchmark_records(benchmark, workers, stage)
+    records = benchmark_records(benchmark, workers)
     if workers == 1:
         for referenced in TRACKS:
-            yield from _predictions(parts, seed, stage, referenced)
+            yield from _track(records, seed, referenced)
         return
-    at_once = partial(_track, parts, seed)
-    with (
-        stage("baselines, tracks", len(TRACKS)) as advance,
-        process_pool(len(TRACKS)) as pool,
-    ):
-        for tables in pool.map(at_once, TRACKS):
+    with process_pool(len(TRACKS)) as pool:
+        for tables in pool.map(partial(_track, records, seed), TRACKS):
             yield from tables
-            advance()
 
 
 @single_thread()
-def _track(parts: tuple[PartRecords, ...], seed: int, referenced: bool) -> list[pa.Table]:
-    return list(_predictions(parts, seed, silent_stage, referenced))
-
-
-def _predictions(parts: tuple[PartRecords, ...], seed: int, stage: Stage, referenced: bool) -> Iterator[pa.Table]:
-    seen = seen_records(parts, referenced=referenced)
+def _track(records: BenchRecords, seed: int, referenced: bool) -> list[pa.Table]:
+    seen = seen_records(records, referenced=referenced)
     if not seen.tests().size or np.unique(seen.damaged).size < 2:
-        return
-    known = entries(seen, seed)
-    scores = {}
-    with stage(f"baselines{BESIDE if referenced else ''}", len(known) + 1) as advance:
-        for entry in known:
-            learnt = entry.make().fit(entry.X[: seen.learn], seen.damaged, seen.gearbox)
-            scores[entry.name] = learnt.score(entry.X)
-            advance()
-        scores[STACK] = stacked(seen, [entry for entry in known if entry.name in STACKED], scores, seed)
-        advance()
-    for name, score in scores.items():
-        yield _rows(f"{name}{BESIDE if referenced else ''}", seen.tests(), score[seen.learn :], referenced)
+        return []
+    known, scores = entries(seen, seed), {}
+    for entry in known:
+        scores[entry.name] = entry.make().fit(entry.X[: seen.learn], seen.damaged, seen.gearbox).score(entry.X)
+    scores[STACK] = stacked(seen, [entry for entry in known if entry.name in STACKED], scores, seed)
+    tests, beside = seen.tests(), BESIDE if referenced else ""
+    return [_rows(f"{name}{beside}", tests, score[seen.learn :], referenced) for name, score in scores.items()]
 
 
 def _rows(name: str, records: np.ndarray, damage: np.ndarray, referenced: bool) -> pa.Table:

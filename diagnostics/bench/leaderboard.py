@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from diagnostics.base.beside import beside
 from diagnostics.base.extras import missing_packages
 from diagnostics.bench.baselines import REFERENCE
 from diagnostics.bench.question import Ranking
@@ -35,7 +36,7 @@ from diagnostics.page.style import png_bytes
 from diagnostics.page.tables import interval_cell
 from diagnostics.page.template import write_page
 from diagnostics.page.wording import capitalised, minus
-from diagnostics.scoring.benchmark import BASELINES, Benchmark, SealedLabels
+from diagnostics.scoring.benchmark import BASELINES, Benchmark, labels_of, open_benchmark
 from diagnostics.scoring.benchmark_scores import JudgedPart, judged_parts, part_columns
 from diagnostics.scoring.prediction_file import CLASSIFIER, PREDICTIONS_FILE, prediction_table
 from diagnostics.scoring.score_rows import ScoreRow, score_figure
@@ -77,7 +78,43 @@ class BoardEntry:
         return sum(self.gearboxes[one] for one in self.every) if part == MEAN else self.gearboxes[part]
 
 
-def board_entries(benchmark: Benchmark, labels: SealedLabels, folder: Path | None, seed: int) -> list[BoardEntry]:
+def leaderboard(
+    folder: str | Path,
+    entries: str | Path | None = None,
+    *,
+    out: str | Path | None = None,
+    labels: str | Path | None = None,
+    seed: int = 0,
+) -> Path:
+    """Write leaderboard.html: all entries and baselines, with limits over gearboxes and paired differences.
+
+    Parameters
+    ----------
+    folder : path
+        Of the benchmark.
+    entries : path, optional
+        Folder with files of predictions. One that used the healthy references says so in a column `reference`.
+    out : path, optional
+        FOLDER_board unless told.
+    labels : path, optional
+        Those revealed, else FOLDER_secret/sealed.json unless told.
+    seed : int
+        Of the resampled gearboxes.
+
+    Returns
+    -------
+    Path
+        The page.
+    """
+    benchmark = open_benchmark(folder)
+    parts = judged_parts(benchmark, labels_of(benchmark, Path(labels) if labels else None))
+    judged = board_entries(benchmark, parts, Path(entries) if entries else None, seed)
+    return write_board(benchmark, judged, Path(out) if out else beside(benchmark.path, "_board"))
+
+
+def board_entries(
+    benchmark: Benchmark, parts: Sequence[JudgedPart], folder: Path | None, seed: int
+) -> list[BoardEntry]:
     """Return all entries: the baselines of the benchmark, and the files of a folder.
 
     Raises
@@ -93,7 +130,7 @@ def board_entries(benchmark: Benchmark, labels: SealedLabels, folder: Path | Non
             f"{folder or benchmark.path}: holds no predictions ({', '.join(SUFFIXES)}); `diagnostics."
             "benchmark_baselines` writes those of the baselines"
         )
-    parts, ranking = judged_parts(benchmark, labels), ranking_of(benchmark)
+    ranking = ranking_of(benchmark)
     weights = {part.name: bootstrap_weights(part.truth.specimen, seed, RESAMPLES) for part in parts}
     found: dict[str, BoardEntry] = {}
     for file in files:

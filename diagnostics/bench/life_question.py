@@ -18,12 +18,11 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from diagnostics.base.progress import Stage
 from diagnostics.bench.conditions import LIFE_CONDITIONS
 from diagnostics.bench.derived_secret import derived
 from diagnostics.bench.question import PublishedRecords, Question, Ranking, Renumbered, Words
-from diagnostics.indicators.table import RecordTable, record_table
-from diagnostics.scoring.benchmark import LEARN, Benchmark
+from diagnostics.indicators.table import record_table
+from diagnostics.scoring.benchmark import Benchmark
 from diagnostics.scoring.prediction_file import CLASSIFIER, RECORD
 from diagnostics.scoring.remaining_life import COLUMNS, EVERY, REMAINING_LIFE
 from diagnostics.training.lives import Inspections, blind_inspections, inspections_of, predictors
@@ -31,7 +30,7 @@ from siggen.dataset.reading import Dataset
 from siggen.errors import counted
 
 
-def life_predictions(benchmark: Benchmark, seed: int, workers: int, stage: Stage) -> Iterator[pa.Table]:
+def life_predictions(benchmark: Benchmark, seed: int, workers: int) -> Iterator[pa.Table]:
     """Yield the rows of every baseline.
 
     Raises
@@ -40,28 +39,18 @@ def life_predictions(benchmark: Benchmark, seed: int, workers: int, stage: Stage
         If fewer than four gearboxes of the part to learn from failed.
     """
     parts = {name: benchmark.part(name) for name in benchmark.parts}
-    learn = inspections_of(benchmark.learn(), _table(LEARN, benchmark.learn(), workers, stage))
-    tests = [blind_inspections(part, _table(name, part, workers, stage)) for name, part in parts.items()]
+    learn = inspections_of(benchmark.learn(), record_table(benchmark.learn(), workers=workers))
+    tests = [blind_inspections(part, record_table(part, workers=workers)) for part in parts.values()]
     found = joined([learn, *tests])
     paces = [pace(benchmark.learn().config, LIFE_CONDITIONS.get(name, {})) for name in parts]
     hour = np.repeat([1.0, *paces], [one.specimen.size for one in (learn, *tests)])
     found = replace(found, age_h=found.age_h * hour)
     known = np.arange(found.specimen.size) < learn.specimen.size
     asked = ~known & (found.split == "test")
-    every = predictors(found, seed)
-    with stage("baselines", len(every)) as advance:
-        for name, predict in every.items():
-            hours = np.maximum(predict(known, asked) / hour[asked, None], 0.0)  # lives are never below 0
-            record = pa.array(found.record_id[asked], pa.int64())
-            yield pa.table(
-                {CLASSIFIER: [name] * len(record), RECORD: record, **dict(zip(COLUMNS, hours.T, strict=True))}
-            )
-            advance()
-
-
-def _table(name: str, dataset: Dataset, workers: int, stage: Stage) -> RecordTable:
-    with stage(f"indicators, {name}", dataset.inventory.rows) as advance:
-        return record_table(dataset, workers=workers, advance=advance)
+    for name, predict in predictors(found, seed).items():
+        hours = np.maximum(predict(known, asked) / hour[asked, None], 0.0)  # lives are never below 0
+        record = pa.array(found.record_id[asked], pa.int64())
+        yield pa.table({CLASSIFIER: [name] * len(record), RECORD: record, **dict(zip(COLUMNS, hours.T, strict=True))})
 
 
 def pace(config: Mapping[str, Any], changes: Mapping[str, Any]) -> float:

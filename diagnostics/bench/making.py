@@ -14,8 +14,7 @@ from __future__ import annotations
 import json
 import math
 import shutil
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,9 +22,9 @@ import numpy as np
 import pyarrow as pa
 
 import siggen
-from diagnostics.base.progress import Stage, silent_stage
-from diagnostics.bench.conditions import TIERS, Tier, changed
-from diagnostics.bench.derived_secret import derived, seed_of, shuffled
+from diagnostics.base.beside import beside
+from diagnostics.bench.conditions import TIERS, changed
+from diagnostics.bench.derived_secret import derived, read_secret, seed_of, shuffled
 from diagnostics.bench.question import PublishedRecords, Question, Renumbered, Words
 from diagnostics.bench.questions import question_of
 from diagnostics.records.state_classes import HEALTHY
@@ -36,6 +35,7 @@ from diagnostics.scoring.benchmark import (
     PER_PART,
     REVEALED,
     SEALED,
+    SECRET,
     TESTS,
     Benchmark,
     benchmark_facts,
@@ -211,31 +211,33 @@ def _files(split: str, path: str) -> str:
     return f"  - split: {split}\n    path: {path}"
 
 
-def commit(benchmark: Benchmark, sealed: Path | None = None) -> str:
-    """Return the SHA-256 of the sealed labels, and write it into the benchmark; labels as of `labels_of`.
+def commit_benchmark(folder: str | Path, labels: str | Path | None = None) -> str:
+    """Return the SHA-256 of labels, salt, seeds and configurations, written into the benchmark: publish it first.
 
     Raises
     ------
     UsageError
         If the labels are of another benchmark, or others were committed to.
     """
-    found = labels_of(benchmark, sealed).commitment
+    benchmark = open_benchmark(folder)
+    found = labels_of(benchmark, Path(labels) if labels else None).commitment
     content = {"sha256": found, "digest": benchmark.digest, "of": REVEALED}
     write_file(benchmark.path / COMMITMENT, json.dumps(content, indent=1) + "\n")
     return found
 
 
-def reveal(benchmark: Benchmark, sealed: Path | None = None) -> Path:
-    """Write the sealed labels into the benchmark; return the file. Labels as of `labels_of`.
+def reveal_benchmark(folder: str | Path, labels: str | Path | None = None) -> Path:
+    """Write labels, salt, seeds and configurations of the test parts into the benchmark; return the file.
 
     Raises
     ------
     UsageError
         If nothing was committed to, or other labels.
     """
+    benchmark = open_benchmark(folder)
     if benchmark.commitment() is None:
         raise UsageError(f"{benchmark.path}: nothing was committed to; call `diagnostics.commit_benchmark` first")
-    found, target = labels_of(benchmark, sealed), benchmark.path / REVEALED
+    found, target = labels_of(benchmark, Path(labels) if labels else None), benchmark.path / REVEALED
     if not target.exists() or not target.samefile(found.file):
         write_file(target, found.file.read_bytes())
     return target
@@ -246,34 +248,63 @@ LEARNT = str(Path(__file__).with_name("siggen_bench.yaml"))
 SECRET_FILE, SIMULATED, CARD = "secret", "simulated", "README.md"
 
 
-@dataclass(frozen=True, slots=True)
-class WantedBench:
-    """What is to be made.
+def make_benchmark(
+    folder: str | Path,
+    tier: str = "tiny",
+    *,
+    config: Any = None,
+    overrides: Sequence[str] = (),
+    secret: str | Path | None = None,
+    facts: str | Path | None = None,
+    workers: int | None = None,
+) -> Benchmark:
+    """Make a part to learn from, and test parts without labels whose seeds nobody knows; or go on with them.
 
-    Attributes
+    Parameters
     ----------
+    folder : path
+        New; publish it.
     tier : str
-    size : Tier
-    config : str or mapping
-        Configuration to learn from: a file, a preset or a mapping.
-    overrides : tuple of str
-        Such as `duration_s=0.5`, for all parts.
-    conditions : mapping, optional
-        What differs in each test part; those of the question unless told.
-    facts : Path or None
-        Licence, authors, citation, as `siggen publish` takes them: the part to learn from is then a published set.
-    """
+        `tiny`, `small` or `full`: how many gearboxes.
+    config : path or mapping, optional
+        To learn from, that of siggen-bench unless told; one of lives asks how long they last.
+    overrides : sequence of str
+        `PATH=VALUE`, in all parts.
+    secret : path, optional
+        Folder for the secret, the simulated test sets and sealed.json, FOLDER_secret unless told. Never publish it.
+    facts : path, optional
+        Licence, authors and citation, as `siggen publish` takes them.
+    workers : int, optional
+        Processes, one per core unless told.
 
-    tier: str = "tiny"
-    size: Tier = TIERS["tiny"]
-    config: str | Mapping[str, Any] = LEARNT
-    overrides: tuple[str, ...] = ()
-    conditions: Mapping[str, Mapping[str, Any]] | None = None
-    facts: Path | None = None
+    Raises
+    ------
+    UsageError
+        If the tier is unknown, or one folder lies in the other.
+    ConfigError, DatasetError
+        As of `siggen.generate`.
+    """
+    if tier not in TIERS:
+        raise UsageError(f"tier: received {tier!r}; allowed are {', '.join(TIERS)}")
+    out, own = Path(folder), Path(facts) if facts else None
+    hidden = Path(secret) if secret else beside(out, SECRET)
+    learn = siggen.load_config(config or LEARNT, [*overrides, f"specimens={TIERS[tier].learn}"])
+    return write_benchmark(
+        out, hidden, read_secret(hidden / SECRET_FILE), learn, tier, TIERS[tier].test, facts=own, workers=workers
+    )
 
 
 def write_benchmark(
-    out: Path, hidden: Path, secret: bytes, wanted: WantedBench, workers: int | None = None, stage: Stage = silent_stage
+    out: Path,
+    hidden: Path,
+    secret: bytes,
+    learn: Any,
+    tier: str,
+    gearboxes: int,
+    *,
+    conditions: Mapping[str, Mapping[str, Any]] | None = None,
+    facts: Path | None = None,
+    workers: int | None = None,
 ) -> Benchmark:
     """Make a benchmark, or go on with one.
 
@@ -284,11 +315,18 @@ def write_benchmark(
     hidden : Path
         What may not.
     secret : bytes
-    wanted : Wanted
+    learn : SetDesign
+        Of the part to learn from.
+    tier : str
+        What it is called.
+    gearboxes : int
+        Of each test part.
+    conditions : mapping, optional
+        What differs in each test part; those of the question unless told.
+    facts : Path, optional
+        Licence, authors, citation, as `siggen publish` takes them: the part to learn from is then a published set.
     workers : int, optional
         As of `siggen.generate`.
-    stage : Stage
-        Told of every part.
 
     Raises
     ------
@@ -299,30 +337,29 @@ def write_benchmark(
     """
     if out.resolve().is_relative_to(hidden.resolve()) or hidden.resolve().is_relative_to(out.resolve()):
         raise UsageError(f"{hidden}: what is secret may not lie in {out}, nor that in it; name another folder")
-    learn = siggen.load_config(wanted.config, [*wanted.overrides, f"specimens={wanted.size.learn}"])
-    secret = derived(secret, wanted.tier, learn.identity)  # what one benchmark reveals tells nothing of another
+    secret = derived(secret, tier, learn.identity)  # what one benchmark reveals tells nothing of another
     question = question_of(learn.canonical())
-    conditions = wanted.conditions or question.conditions
-    tests = {name: _test_config(learn, name, conditions[name], wanted.size.test, secret) for name in conditions}
-    _write_learn(learn, out / LEARN, hidden, wanted.facts, (workers, stage))
+    conditions = conditions or question.conditions
+    tests = {name: _test_config(learn, name, conditions[name], gearboxes, secret) for name in conditions}
+    _write_learn(learn, out / LEARN, hidden, facts, workers)
     parts = {}
     for place, (name, config) in enumerate(tests.items()):
-        dataset = _simulated(config, hidden / SIMULATED / name, name, workers, stage)
+        dataset = _simulated(config, hidden / SIMULATED / name, workers)
         numbers = renumbered(dataset, question.shown(dataset, secret, name), secret, name, place)
         seen, kept = question.tables(dataset, numbers)
         parts[name] = sealed_part(dataset, numbers, kept)
         _write_blind(dataset, numbers, (learn, config), out / TESTS / name, question, seen)
-    facts = benchmark_facts(out, question.title, wanted.tier, tuple(tests))
+    told = benchmark_facts(out, question.title, tier, tuple(tests))
     sealed = {
         "salt": derived(secret, "salt").hex(),
-        **{name: facts[name] for name in ("title", "tier", "digest", "simulation_version")},
+        **{name: told[name] for name in ("title", "tier", "digest", "simulation_version")},
         "configurations": {name: config.canonical() for name, config in tests.items()},
         "parts": parts,
     }
     write_file(hidden / SEALED, json.dumps(sealed, sort_keys=True, allow_nan=False) + "\n")
     own = (out / LEARN / CARD).read_text(encoding="utf-8")
-    write_file(out / CARD, benchmark_card(facts, learn, own, question.words))
-    write_file(out / FACTS, json.dumps(facts, indent=1) + "\n")
+    write_file(out / CARD, benchmark_card(told, learn, own, question.words))
+    write_file(out / FACTS, json.dumps(told, indent=1) + "\n")
     return open_benchmark(out)
 
 
@@ -333,29 +370,20 @@ def _test_config(learn: Any, name: str, changes: Mapping[str, Any], gearboxes: i
     return siggen.load_config(own)
 
 
-def _write_learn(config: Any, folder: Path, hidden: Path, facts: Path | None, how: tuple[int | None, Stage]) -> None:
+def _write_learn(config: Any, folder: Path, hidden: Path, facts: Path | None, workers: int | None) -> None:
     """Write the part to learn from, with authors' facts as a set that is ready to be published."""
     if facts is None:
-        _simulated(config, folder, LEARN, *how)
+        _simulated(config, folder, workers)
         return
-    _simulated(config, hidden / SIMULATED / LEARN, LEARN, *how)
+    _simulated(config, hidden / SIMULATED / LEARN, workers)
     if not (folder / "manifest.json").is_file():
         shutil.rmtree(folder, ignore_errors=True)
         siggen.publish(hidden / SIMULATED / LEARN, folder, facts)
 
 
-def _simulated(config: Any, folder: Path, title: str, workers: int | None, stage: Stage) -> Dataset:
+def _simulated(config: Any, folder: Path, workers: int | None) -> Dataset:
     """Return a set that is simulated, or was."""
-    with stage(title, config.specimens * config.records_per_specimen) as advance:
-        told = 0
-
-        def progress(done: int, _total: int) -> None:
-            nonlocal told
-            for _ in range(done - told):
-                advance()
-            told = max(done, told)
-
-        siggen.generate(config, folder, workers, progress)
+    siggen.generate(config, folder, workers)
     return open_set(folder)
 
 

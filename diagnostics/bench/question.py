@@ -11,7 +11,6 @@ from typing import Any
 
 import pyarrow as pa
 
-from diagnostics.base.progress import Stage
 from diagnostics.scoring.benchmark import Benchmark
 from diagnostics.scoring.task import Measure, Task
 from siggen.dataset.reading import Dataset
@@ -115,7 +114,7 @@ class Question:
     tables : callable
         Simulated set and new numbers; returns the tables of `life/` to publish, and those to seal.
     predictions : callable
-        Benchmark, seed, processes, stage; yields what the baselines say of the records asked about.
+        Benchmark, seed, processes; yields what the baselines say of the records asked about.
     """
 
     title: str
@@ -124,4 +123,4 @@ class Question:
     ranking: Ranking
     shown: Callable[[Dataset, bytes, str], PublishedRecords]
     tables: Callable[[Dataset, Renumbered], tuple[dict[str, pa.Table], dict[str, pa.Table]]]
-    predictions: Callable[[Benchmark, int, int, Stage], Iterator[pa.Table]]
+    predictions: Callable[[Benchmark, int, int], Iterator[pa.Table]]

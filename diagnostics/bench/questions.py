@@ -9,12 +9,12 @@ from typing import Any
 import pyarrow as pa
 from pyarrow import parquet
 
-from diagnostics.base.progress import Stage
+from diagnostics.base.extras import require_packages
 from diagnostics.base.single_thread import single_thread
 from diagnostics.bench.damage_question import DAMAGE_QUESTION
 from diagnostics.bench.life_question import LIFE_QUESTION
 from diagnostics.bench.question import Question
-from diagnostics.scoring.benchmark import BASELINES, Benchmark
+from diagnostics.scoring.benchmark import BASELINES, open_benchmark
 from diagnostics.scoring.prediction_file import IDENTITY_KEY, PREDICTIONS_FILE
 from siggen.file_writing import write_file
 
@@ -25,9 +25,11 @@ def question_of(config: Mapping[str, Any]) -> Question:
 
 
 @single_thread()
-def write_baselines(benchmark: Benchmark, seed: int, workers: int, stage: Stage) -> Path:
-    """Write what all baselines say of all test parts into the benchmark, from some processes; return the file."""
-    rows = list(question_of(benchmark.learn().config).predictions(benchmark, seed, workers, stage))
+def benchmark_baselines(folder: str | Path, seed: int = 0, workers: int = 1) -> Path:
+    """Learn the baselines on the part to learn from, write what they say of all test parts; return the file."""
+    require_packages("baselines", "sklearn")
+    benchmark = open_benchmark(folder)
+    rows = list(question_of(benchmark.learn().config).predictions(benchmark, seed, workers))
     table = pa.concat_tables(rows).replace_schema_metadata({IDENTITY_KEY: benchmark.digest.encode()})
     path = benchmark.path / BASELINES / PREDICTIONS_FILE
     write_file(path, lambda draft: parquet.write_table(table, draft, compression="zstd"))

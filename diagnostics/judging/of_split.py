@@ -358,11 +358,6 @@ def _compared(first: Judged, second: Judged, healthy: str | None, seed: int) -> 
     return comparison((first.name, second.name), first.predictions, second.predictions, seed, healthy)
 
 
-def expected_area(found: Predictions, area_by_state: np.ndarray) -> np.ndarray:
-    """Return the area [mm^2] that probabilities of the states (n, states) expect, (n,)."""
-    return np.asarray(found.probability @ area_by_state)
-
-
 def mean_areas(matrix: FeatureMatrix, split: SpecimenSplit) -> np.ndarray:
     """Return the mean damaged area of the training records of every class [mm^2], (classes,)."""
     area, own = matrix.labels["damaged_area_mm2"][split.train], matrix.labels[CLASS][split.train]

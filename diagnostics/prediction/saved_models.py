@@ -20,7 +20,7 @@ from diagnostics.indicators.registry import indicator_columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.judging.judgement import REFERENCED as REFERENCED_NAME
 from diagnostics.judging.judgement import Judged
-from diagnostics.judging.of_split import Training, expected_area
+from diagnostics.judging.of_split import Training
 from diagnostics.prediction.model_facts import FACTS_FILE, MODEL_FILES, REFERENCED, ModelFacts, model_facts, write_facts
 from diagnostics.prediction.noise_floor import floor_features
 from diagnostics.prediction.training_distance import TrainingDistance, calibrated_distance, distance_features
@@ -28,7 +28,7 @@ from diagnostics.records.gear_train import GearNames
 from diagnostics.records.record_classes import STATE, set_classes
 from diagnostics.records.recording import names_of, recordings
 from diagnostics.records.state_classes import HEALTHY
-from diagnostics.scoring.prediction_file import PredictedRecords, predicted_rows, write_predictions
+from diagnostics.scoring.prediction_file import predicted_rows, write_predictions
 from diagnostics.statistics.evaluation import Interval, IntervalScores
 from diagnostics.training.feature_classifier import FeatureClassifier, save_classifier
 from diagnostics.training.realism import meaning_of_scores
@@ -41,13 +41,15 @@ from siggen.printable import markdown
 
 @dataclass(frozen=True, slots=True)
 class ReferencedVariant:
-    """Classifier and distance on features minus those of the same machine in healthy state, and its test scores."""
+    """Classifier and distance on features minus those of the same machine in healthy state, and its test scores.
+
+    `outside` is the share of the test records that the distance calls unlike training.
+    """
 
     classifier: FeatureClassifier
     distance: TrainingDistance
     scores: IntervalScores
-    distances: np.ndarray
-    test: np.ndarray
+    outside: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,20 +61,17 @@ class Release:
     facts : ModelFacts
     distance : TrainingDistance
         On log features.
-    test_outside : float
+    outside : float
         Share of the test records that it calls unlike training; false alarms, since they are of the same family.
     referenced : ReferencedVariant or None
         None where healthy records do not suffice; `note` says why.
-    referenced_outside : float
-        As `test_outside`, of the variant; NaN without it.
     note : str
     """
 
     facts: ModelFacts
     distance: TrainingDistance
-    test_outside: float
+    outside: float
     referenced: ReferencedVariant | None
-    referenced_outside: float
     note: str
 
 
@@ -91,20 +90,12 @@ def release(training: Training, table: pa.Table, dataset: Dataset) -> Release:
     split = training.split
     matrix = feature_matrix(table, set_classes(dataset, split.kind))
     whole = with_floor_features(matrix, dataset)
-    distance, distances = _distance(log_values(whole.values), whole, split, names_of(dataset))
+    distance, outside = _distance(log_values(whole.values), whole, split, names_of(dataset))
     referenced, note = _referenced(training, whole, names_of(dataset))
     seen = {name: column[~split.test] for name, column in matrix.labels.items()}
     ratio = reference_speed_ratio(seen) if referenced else None
-    return Release(
-        facts=replace(model_facts(dataset, table, split), reference_speed_ratio=ratio),
-        distance=distance,
-        test_outside=_share_outside(distances[split.test], distance),
-        referenced=referenced,
-        referenced_outside=(
-            _share_outside(referenced.distances[referenced.test], referenced.distance) if referenced else np.nan
-        ),
-        note=note,
-    )
+    facts = replace(model_facts(dataset, table, split), reference_speed_ratio=ratio)
+    return Release(facts, distance, outside, referenced, note)
 
 
 def with_floor_features(matrix: FeatureMatrix, dataset: Dataset) -> FeatureMatrix:
@@ -127,16 +118,13 @@ def with_floor_features(matrix: FeatureMatrix, dataset: Dataset) -> FeatureMatri
 
 def _distance(
     logs: np.ndarray, matrix: FeatureMatrix, split: SpecimenSplit, gears: GearNames
-) -> tuple[TrainingDistance, np.ndarray]:
+) -> tuple[TrainingDistance, float]:
+    """Return the distance, and the share of the test records that lie beyond its threshold."""
     parts = distance_features(matrix.names, gears)
     chosen = logs[:, [matrix.names.index(name) for part in parts for name in part]]
     speed_hz = matrix.labels["speed_hz"].astype(np.float64)
     found = calibrated_distance(chosen, speed_hz, parts, split, matrix.labels["specimen_id"])
-    return found, found.distance(chosen, speed_hz)
-
-
-def _share_outside(distances: np.ndarray, found: TrainingDistance) -> float:
-    return float(np.mean(distances > found.threshold))
+    return found, float(np.mean(found.distance(chosen, speed_hz)[split.test] > found.threshold))
 
 
 def _referenced(training: Training, whole: FeatureMatrix, gears: GearNames) -> tuple[ReferencedVariant | None, str]:
@@ -149,8 +137,8 @@ def _referenced(training: Training, whole: FeatureMatrix, gears: GearNames) -> t
         )
     (judged,) = [own for own in found.judged if own.name == REFERENCED_NAME]
     apart = healthy_referenced(whole)[0]
-    distance, distances = _distance(apart.values, apart, found.split, gears)
-    return ReferencedVariant(found.classifier, distance, judged.scores, distances, found.split.test), ""
+    distance, outside = _distance(apart.values, apart, found.split, gears)
+    return ReferencedVariant(found.classifier, distance, judged.scores, outside), ""
 
 
 def save_release(training: Training, found: Release, table: pa.Table, folder: Path) -> None:
@@ -164,8 +152,8 @@ def save_release(training: Training, found: Release, table: pa.Table, folder: Pa
             name: {"accuracy": score.accuracy.numbers(), "macro_auroc": score.macro_auroc.numbers()}
             for name, score in scored.items()
         },
-        "test_records_outside": found.test_outside,
-        "referenced_test_records_outside": found.referenced_outside if variant else None,
+        "test_records_outside": found.outside,
+        "referenced_test_records_outside": variant.outside if variant else None,
     }
     write_facts(found.facts, found.distance, variant.distance if variant else None, scores, folder)
 
@@ -328,7 +316,7 @@ def release_card(found: Release) -> str:
         f"{facts.torque_range_nm[0]:.3g} to {facts.torque_range_nm[1]:.3g} N m in training and validation. Outside "
         "these ranges no answer is given. Torque is not checked, because a recording does not contain it.",
         f"* distance to the training records: the threshold is {distance.threshold:.2f}, from "
-        f"{distance.held_out_specimens} held-out specimens. It refuses {found.test_outside:.1%} of the test records, "
+        f"{distance.held_out_specimens} held-out specimens. It refuses {found.outside:.1%} of the test records, "
         "which are of the same family.",
     ]
     if found.referenced:
@@ -377,9 +365,7 @@ def _predicted(training: Training, table: pa.Table) -> list[pa.Table]:
     record_id, split = np.asarray(table.column("record_id").to_pylist()), training.split
     parts = [(VALIDATION, split.validation, "validation"), (TEST, split.test, "predictions")]
     return [
-        predicted_rows(
-            PredictedRecords(judged.name, name, record_id[mask], found, expected_area(found, training.class_areas))
-        )
+        predicted_rows(judged.name, name, record_id[mask], found, training.class_areas)
         for judged in training.judged
         for name, mask, attribute in parts
         if (found := getattr(judged, attribute)) is not None

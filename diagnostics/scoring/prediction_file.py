@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -149,17 +148,6 @@ def _shown(records: np.ndarray) -> str:
     return ", ".join(str(number) for number in records[:SHOWN].tolist()) + more
 
 
-@dataclass(frozen=True, slots=True)
-class PredictedRecords:
-    """What a classifier of a training says of the records of one split; `area_mm2` (n,) is what it expects."""
-
-    classifier: str
-    split: str
-    record_id: np.ndarray
-    predictions: Predictions
-    area_mm2: np.ndarray
-
-
 def write_predictions(parts: Sequence[pa.Table], identity: str, folder: Path, kind: str = STATE) -> Path:
     """Write the predictions of all classifiers into the folder of their models; return the file's path.
 
@@ -175,12 +163,23 @@ def write_predictions(parts: Sequence[pa.Table], identity: str, folder: Path, ki
     return path
 
 
-def predicted_rows(entry: PredictedRecords) -> pa.Table:
-    """Return the rows of a classifier: probabilities of its classes and the damaged area that they expect."""
-    found = entry.predictions
+def predicted_rows(
+    classifier: str, split: str, record_id: np.ndarray, found: Predictions, class_areas: np.ndarray
+) -> pa.Table:
+    """Return the rows of a classifier: probabilities of its classes and the damaged area that they expect.
+
+    Parameters
+    ----------
+    classifier, split : str
+    record_id : (n,) int
+    found : Predictions
+    class_areas : (classes,) float64
+        Mean damaged area of every class [mm^2].
+    """
     columns = {f"{PROBABILITY}{name}": found.probability[:, k] for k, name in enumerate(found.classes)}
-    names = {CLASSIFIER: [entry.classifier] * entry.record_id.size, SPLIT: [entry.split] * entry.record_id.size}
-    return pa.table({**names, RECORD: pa.array(entry.record_id, pa.int64()), **columns, AREA: entry.area_mm2})
+    names = {CLASSIFIER: [classifier] * record_id.size, SPLIT: [split] * record_id.size}
+    areas = found.probability @ class_areas
+    return pa.table({**names, RECORD: pa.array(record_id, pa.int64()), **columns, AREA: areas})
 
 
 def prediction_table(predictions: Any) -> pa.Table:

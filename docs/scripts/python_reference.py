@@ -137,9 +137,9 @@ DIAGNOSTICS = {
         "JudgedDetector": "judging.alarms", "diagnostics.score": "scoring.score",
         "Scores": "scoring.score", "ScoreRow": "scoring.score_rows", "diagnostics.open_benchmark": "scoring.benchmark",
         "diagnostics.score_benchmark": "scoring.benchmark_scores",
-        "diagnostics.make_benchmark": "bench.steps", "diagnostics.commit_benchmark": "bench.steps",
-        "diagnostics.reveal_benchmark": "bench.steps", "diagnostics.benchmark_baselines": "bench.steps",
-        "diagnostics.leaderboard": "bench.steps",
+        "diagnostics.make_benchmark": "bench.making", "diagnostics.commit_benchmark": "bench.making",
+        "diagnostics.reveal_benchmark": "bench.making", "diagnostics.benchmark_baselines": "bench.questions",
+        "diagnostics.leaderboard": "bench.leaderboard",
     },
     "## diagnostics.loader\n\nWindows of a set for PyTorch. [Load a set](../start/load_a_set.md) has an example.": {
         "diagnostics.loader.WindowStream": "loader.window_stream",

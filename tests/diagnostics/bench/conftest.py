@@ -7,8 +7,9 @@ from typing import Any, NamedTuple
 
 import pytest
 
+import siggen
 from diagnostics.bench.conditions import Tier
-from diagnostics.bench.making import SIMULATED, WantedBench, commit, write_benchmark
+from diagnostics.bench.making import SIMULATED, commit_benchmark, write_benchmark
 from diagnostics.scoring.benchmark import SEALED, Benchmark, open_benchmark
 from tests.shared import shared_folder
 
@@ -62,8 +63,9 @@ class Made(NamedTuple):
 def make(folder: Path, size: Tier = SMALL, secret: bytes = SECRET, facts: Path | None = None) -> Made:
     """Make a benchmark; without an argument a small one of one test part, in which attackers would see nothing."""
     conditions: dict[str, Any] = {"same": {}, **(OTHERS if size != SMALL else {})}
-    wanted = WantedBench("tiny", size, CONFIG, (), conditions, facts)
-    return Made(write_benchmark(folder / "bench", folder / "hidden", secret, wanted, 0), folder / "hidden")
+    learn, hidden = siggen.load_config(CONFIG, [f"specimens={size.learn}"]), folder / "hidden"
+    facts_of = {"conditions": conditions, "facts": facts, "workers": 0}
+    return Made(write_benchmark(folder / "bench", hidden, secret, learn, "tiny", size.test, **facts_of), hidden)
 
 
 def committed_benchmark(factory: pytest.TempPathFactory) -> Path:
@@ -71,7 +73,7 @@ def committed_benchmark(factory: pytest.TempPathFactory) -> Path:
 
     def committed(folder: Path) -> None:
         found = make(folder, Tier(6, GEARBOXES))
-        commit(found.benchmark, found.sealed)
+        commit_benchmark(found.benchmark.path, found.sealed)
 
     return shared_folder(factory, "benchmark", committed)
 

@@ -12,7 +12,6 @@ import pyarrow.parquet as pq
 import pytest
 
 import diagnostics
-from diagnostics.base.progress import silent_stage
 from diagnostics.bench.baselines import (
     BESIDE,
     CHANCE,
@@ -123,7 +122,7 @@ def test_baselines_say_the_same_from_any_number_of_processes(made: Made, tmp_pat
 @pytest.mark.slow  # trains the network once
 def test_the_network_learns_from_the_records_that_it_may_see_alone(learned: Path) -> None:
     pytest.importorskip("torch")
-    seen = seen_records(benchmark_records(open_benchmark(learned), 1, silent_stage), referenced=True)
+    seen = seen_records(benchmark_records(open_benchmark(learned), 1), referenced=True)
     network = next(entry for entry in entries(seen, 0) if entry.name == NETWORK)
     unique = np.unique(seen.gearbox)
     half, own = np.isin(seen.gearbox, unique[: unique.size // 2]), network.X[: seen.learn]

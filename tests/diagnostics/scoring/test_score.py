@@ -18,7 +18,7 @@ import diagnostics
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.records.recording import LABEL_NAMES
 from diagnostics.scoring.abstain import risks
-from diagnostics.scoring.prediction_file import PredictedRecords, predicted_rows, write_predictions
+from diagnostics.scoring.prediction_file import predicted_rows, write_predictions
 from diagnostics.scoring.score import Scores
 from diagnostics.scoring.score_rows import ScoreRow
 from diagnostics.scoring.tasks import truth_of
@@ -262,13 +262,7 @@ def written(dataset: Any, folder: Path, identity: str = "0" * 64) -> np.ndarray:
     guess = np.full_like(own, 1.0 / 3.0)
     entries = [
         predicted_rows(
-            PredictedRecords(
-                name,
-                "test",
-                truth.record_id,
-                Predictions(CLASSES, truth.label, found, truth.specimen),
-                np.zeros(truth.label.size),
-            )
+            name, "test", truth.record_id, Predictions(CLASSES, truth.label, found, truth.specimen), np.zeros(3)
         )
         for name, found in (("boosting", own), ("rms", guess))
     ]
