@@ -70,11 +70,6 @@ def chance_sentence(audit: Audit) -> str:
     )
 
 
-def tried(audit: Audit) -> int:
-    """Return how many single indicators were tried."""
-    return max((best.tried for best in audit.best.values()), default=0)
-
-
 def _auc(value: float) -> str:
     return f"{value:.2f}" if math.isfinite(value) else "-"
 
@@ -453,7 +448,8 @@ def _best_table(audit: Audit) -> TableBlock:
         for state, best in ((state, audit.best[state]) for state in audit.states if state in audit.best)
     ]
     head = ["State", "Best indicator", "Its AUC [-]", "Chosen on other gearboxes [-]"]
-    caption = f"Best of {counted(tried(audit), 'single indicator')} by state: AUC against healthy, with 95 % limits."
+    tried = max(best.tried for best in audit.best.values())
+    caption = f"Best of {counted(tried, 'single indicator')} by state: AUC against healthy, with 95 % limits."
     return TableBlock(head, rows, caption=caption, text=True)
 
 

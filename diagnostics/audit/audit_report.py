@@ -9,7 +9,7 @@ import json
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -157,26 +157,11 @@ def _share_numbers(shares: tuple[QuantityShare, ...]) -> list[dict[str, Any]]:
     ]
 
 
-@dataclass(frozen=True, slots=True)
-class AuditOptions:
-    """What is asked of a set besides its traps.
-
-    Attributes
-    ----------
-    seed : int
-        Seed of permutations, folds and bootstrap.
-    reference : Path, optional
-        Folder of measured healthy recordings to compare with.
-    """
-
-    seed: int = 0
-    reference: Path | None = None
-
-
 @single_thread()
 def audit_set(
     dataset: Dataset,
-    options: AuditOptions | None = None,
+    seed: int = 0,
+    reference: Path | None = None,
     own: Sequence[OwnIndicator] = (),
     stage: Stage = silent_stage,
 ) -> Audit:
@@ -186,14 +171,15 @@ def audit_set(
     ----------
     dataset : siggen Dataset
         What `siggen.open` returned.
-    options : AuditOptions, optional
+    seed : int
+        Of permutations, folds and bootstrap.
+    reference : Path, optional
+        Folder of measured healthy recordings to compare with.
     own : sequence of OwnIndicator
         The user's indicators, tried besides those of the package.
     stage : Stage
         Told of every step.
     """
-    options = options or AuditOptions()
-    seed, reference = options.seed, options.reference
     require_packages("the audit", "sklearn", "matplotlib")
     # first, so that a wrong folder is said before minutes have passed
     real = reference_windows(reference) if reference else None

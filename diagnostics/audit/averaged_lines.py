@@ -13,7 +13,6 @@ filters of zero phase, which leave the smear, tell far less.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -37,22 +36,6 @@ LOCAL_SHARE = 1.0 / 20.0
 
 KURTOGRAM_PARTS = (1, 2, 3, 4, 6, 8, 12, 16)
 TINY = 1e-30
-
-
-@dataclass(frozen=True, slots=True)
-class Bank:
-    """Columns of a bank.
-
-    Attributes
-    ----------
-    values : (records, channels, columns) float64
-        NaN where a channel was not measured.
-    names : tuple of str
-        Each with its band.
-    """
-
-    values: np.ndarray
-    names: tuple[str, ...]
 
 
 def order_bands(highest: int) -> tuple[tuple[int, int], ...]:
@@ -87,7 +70,7 @@ def analytic(lines: np.ndarray, low: int, high: int, steps: int) -> np.ndarray:
     return np.asarray(fft.ifft(kept, axis=-1)) * steps
 
 
-def band_bank(residual: np.ndarray, reference: np.ndarray | None = None) -> Bank:
+def band_bank(residual: np.ndarray, reference: np.ndarray | None = None) -> tuple[np.ndarray, tuple[str, ...]]:
     """Return kurtosis, local energy and energy of every band, logarithms each.
 
     Parameters
@@ -97,6 +80,13 @@ def band_bank(residual: np.ndarray, reference: np.ndarray | None = None) -> Bank
     reference : (records, channels, orders) complex128, optional
         Residual lines of the reference; energy is then relative to its energy in the band, else to that of the whole
         residual.
+
+    Returns
+    -------
+    (records, channels, columns) float64
+        NaN where a channel was not measured.
+    tuple of str
+        What each column is, with its band.
     """
     columns, names = [], []
     every = np.square(np.abs(residual)).sum(axis=-1)
@@ -108,7 +98,7 @@ def band_bank(residual: np.ndarray, reference: np.ndarray | None = None) -> Bank
         columns += [log_kurtosis(wave.real), log_local_energy(wave), np.log10((energy + TINY) / (whole + TINY))]
         names += [f"{what}, orders {low} to {high}" for what in ("kurtosis", "local energy", "energy")]
     found = np.stack(columns, axis=-1) if columns else np.empty((*residual.shape[:-1], 0))
-    return Bank(np.where(np.isfinite(found), found, np.nan), tuple(names))
+    return np.where(np.isfinite(found), found, np.nan), tuple(names)
 
 
 def log_kurtosis(wave: np.ndarray) -> np.ndarray:

@@ -18,7 +18,7 @@ grows with the damage is not seen here. Source: derived.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -60,18 +60,12 @@ MESH_LINES = 12
 TINY = 1e-30
 
 
-@dataclass(frozen=True, slots=True)
-class SizedStates:
-    """The state of the least damage of a kind, and those of the kind that are much larger."""
+def sized_states(measured: MeasuredSet) -> list[tuple[str, tuple[str, ...]]]:
+    """Return the state of least mean damaged area of every kind of fault, and those of the kind that are much larger.
 
-    smallest: str
-    larger: tuple[str, ...]
-
-
-def sized_states(measured: MeasuredSet) -> list[SizedStates]:
-    """Return the smallest state of every kind of fault that has larger ones, by mean damaged area."""
-    labels = measured.labels
-    found: list[SizedStates] = []
+    Kinds without a larger state are left out.
+    """
+    labels, found = measured.labels, list[tuple[str, tuple[str, ...]]]()
     if "damaged_area_mm2" not in labels:
         return found
     for fault in dict.fromkeys(labels["fault"][~measured.healthy].tolist()):
@@ -84,7 +78,7 @@ def sized_states(measured: MeasuredSet) -> list[SizedStates]:
         smallest = min(area, key=lambda state: area[state])
         larger = tuple(state for state, mean in area.items() if mean >= LARGER * area[smallest] > 0.0)
         if larger:
-            found.append(SizedStates(smallest, larger))
+            found.append((smallest, larger))
     return found
 
 
@@ -93,7 +87,7 @@ def small_damage_attackers(measured: MeasuredSet, reference: np.ndarray) -> list
     values, names = movable_changes(measured, reference)
     if not names:
         return []
-    return [_attacker(measured, sizes, values, names) for sizes in sized_states(measured)]
+    return [_attacker(measured, *sizes, values, names) for sizes in sized_states(measured)]
 
 
 def movable_changes(measured: MeasuredSet, reference: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
@@ -153,11 +147,13 @@ class _LikeLarger:
         return np.asarray(self.turned * self.values[X][:, self.best].T)
 
 
-def _attacker(measured: MeasuredSet, sizes: SizedStates, values: np.ndarray, names: tuple[str, ...]) -> Entry:
+def _attacker(
+    measured: MeasuredSet, smallest: str, larger_states: tuple[str, ...], values: np.ndarray, names: tuple[str, ...]
+) -> Entry:
     state = measured.labels["state"]
     defined = np.isfinite(values).all(axis=1)
-    larger = [np.flatnonzero(defined & (state == one)) for one in sizes.larger]
-    usable = defined & (measured.healthy | (state == sizes.smallest))
+    larger = [np.flatnonzero(defined & (state == one)) for one in larger_states]
+    usable = defined & (measured.healthy | (state == smallest))
     make = partial(_LikeLarger, values, names, larger, measured.labels["specimen_id"])
     return Entry(f"change of {LEVELS}", make, np.arange(len(values)), usable, len(names))
 

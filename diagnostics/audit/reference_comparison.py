@@ -14,7 +14,7 @@ that ran once: they are one recording. Windows of one recording are not independ
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -26,6 +26,7 @@ from diagnostics.judging.evaluation import Entry, held_out_values
 from diagnostics.judging.learners import GroupRidge, products
 from diagnostics.recordings.file_columns import READERS
 from diagnostics.recordings.taken import RecordingFacts, channel_columns, say_taken, take
+from diagnostics.records.state_classes import HEALTHY
 from diagnostics.signal.window_features import FEATURES, signal_windows, window_features
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
@@ -67,22 +68,13 @@ class WindowSet:
         return np.stack([np.median(rows, axis=0) for rows in found]), np.array([owner for owner, _ in pairs])
 
 
-class _Windows:
-    """Windows as they are read."""
-
-    def __init__(self) -> None:
-        self.values: list[np.ndarray] = []
-        self.owner: list[str] = []
-        self.channel: list[str] = []
-
-    def add(self, signal: np.ndarray, fs_hz: float, owner: str, channel: str) -> None:
-        rows = _channel_features(signal, fs_hz)
-        self.values += rows
-        self.owner += [owner] * len(rows)
-        self.channel += [channel] * len(rows)
-
-    def together(self) -> WindowSet:
-        return WindowSet(np.stack(self.values), np.array(self.owner), np.array(self.channel))
+def window_set(channels: Iterable[tuple[np.ndarray, float, str, str]]) -> WindowSet | None:
+    """Return the windows of channels: signal (n,), rate [Hz], owner and name; None where none holds a whole second."""
+    found = [(row, *named) for signal, fs_hz, *named in channels for row in _channel_features(signal, fs_hz)]
+    if not found:
+        return None
+    values, owner, channel = zip(*found, strict=True)
+    return WindowSet(np.stack(values), np.array(owner), np.array(channel))
 
 
 def reference_windows(folder: Path) -> WindowSet:
@@ -103,29 +95,31 @@ def reference_windows(folder: Path) -> WindowSet:
     files = sorted(path for path in folder.rglob("*") if path.suffix.lower() in READERS)
     if not files:
         raise UsageError(f"{folder}: no recordings; allowed are files that end in {', '.join(READERS)}")
-    windows = _Windows()
-    for path in files:
-        try:
-            taken = take(path, RecordingFacts(), say=False)
-            columns = channel_columns(taken)
-        except UsageError as error:
-            raise UsageError(
-                f"{str(error).rstrip('.')}. `audit` takes no option of `siggen-diagnostics indicators`: correct the "
-                "file, or leave it out"
-            ) from error
-        say_taken(taken)
-        rate = taken.fs_hz
-        if not rate or rate < LOWEST_RATE_HZ:
-            raise UsageError(
-                f"{path}: sampling rate: received {rate}; {LOWEST_RATE_HZ:g} Hz or more are needed. Give the file "
-                "a column of times with its unit, time [s], or write it as WAV"
-            )
-        inside = path.relative_to(folder)
-        for column in columns.values():
-            windows.add(taken.found.values[column], rate, inside.parts[0], f"{inside}:{column}")
-    if not windows.values:
+    windows = window_set(channel for path in files for channel in _recorded(path, path.relative_to(folder)))
+    if windows is None:
         raise UsageError(f"{folder}: no recording holds a whole second; windows of one second are needed")
-    return windows.together()
+    return windows
+
+
+def _recorded(path: Path, inside: Path) -> Iterator[tuple[np.ndarray, float, str, str]]:
+    """Yield the channels of a file, which lies `inside` of the folder."""
+    try:
+        taken = take(path, RecordingFacts(), say=False)
+        columns = channel_columns(taken)
+    except UsageError as error:
+        raise UsageError(
+            f"{str(error).rstrip('.')}. `audit` takes no option of `siggen-diagnostics indicators`: correct the "
+            "file, or leave it out"
+        ) from error
+    say_taken(taken)
+    rate = taken.fs_hz
+    if not rate or rate < LOWEST_RATE_HZ:
+        raise UsageError(
+            f"{path}: sampling rate: received {rate}; {LOWEST_RATE_HZ:g} Hz or more are needed. Give the file "
+            "a column of times with its unit, time [s], or write it as WAV"
+        )
+    for column in columns.values():
+        yield taken.found.values[column], rate, inside.parts[0], f"{inside}:{column}"
 
 
 def _channel_features(signal: np.ndarray, fs_hz: float) -> list[np.ndarray]:
@@ -151,20 +145,22 @@ def synthetic_windows(dataset: Dataset, advance: Callable[[], None]) -> WindowSe
     UsageError
         If no healthy record holds a whole second.
     """
+    windows = window_set(_healthy(dataset, advance))
+    if windows is None:
+        raise UsageError(f"{dataset.path}: no healthy record holds a whole second; --reference needs one")
+    return windows
+
+
+def _healthy(dataset: Dataset, advance: Callable[[], None]) -> Iterator[tuple[np.ndarray, float, str, str]]:
     columns = {channel.name: channel.column for channel in dataset.channels}
-    windows = _Windows()
     for batch in dataset.records(columns=["specimen_id", "fault", *columns.values()]):
         for row in range(batch.num_rows):
             advance()
-            if batch.column("fault")[row].as_py() != "healthy":
-                continue
-            owner = str(batch.column("specimen_id")[row].as_py())
-            for name, column in columns.items():
-                signal = np.asarray(batch.column(column)[row].values, dtype=np.float64)
-                windows.add(signal, dataset.fs_hz, owner, name)
-    if not windows.values:
-        raise UsageError(f"{dataset.path}: no healthy record holds a whole second; --reference needs one")
-    return windows.together()
+            if batch.column("fault")[row].as_py() == HEALTHY:
+                owner = str(batch.column("specimen_id")[row].as_py())
+                for name, column in columns.items():
+                    signal = np.asarray(batch.column(column)[row].values, dtype=np.float64)
+                    yield signal, dataset.fs_hz, owner, name
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ network, which is that of `report`; with a reference the change is measured agai
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from itertools import combinations, pairwise
 
@@ -26,7 +26,6 @@ import numpy as np
 
 from diagnostics.audit.audit import REFERENCED
 from diagnostics.audit.averaged_lines import (
-    Bank,
     band_bank,
     innovations,
     kurtogram_maximum,
@@ -209,12 +208,11 @@ def network_attacker(name: str, measured: MeasuredSet, reference: np.ndarray | N
     return Entry(name, lambda: network, places, usable, records.rows * 2 * lines.shape[2], deals=1, many=False)
 
 
-def revolution(lines: np.ndarray, steps: int = STEPS) -> np.ndarray:
-    """Return one revolution of lines at equal angle steps, (..., steps) float32; higher orders are left out."""
+def revolution(lines: np.ndarray) -> np.ndarray:
+    """Return one revolution of lines at equal angle steps, (..., 1024) float32; higher orders are left out."""
     from scipy import fft
 
-    kept = lines[..., : steps // 2]
-    return np.asarray(fft.irfft(kept, n=steps, axis=-1) * (0.5 * steps), dtype=np.float32)
+    return np.asarray(fft.irfft(lines[..., : STEPS // 2], n=STEPS, axis=-1) * (0.5 * STEPS), dtype=np.float32)
 
 
 def convolution_features(waves: np.ndarray, first: int | None = None) -> np.ndarray:
@@ -297,8 +295,8 @@ def attackers_on(
     suffix = REFERENCED if reference is not None else ""
     flat = innovations(residual, measured.teeth)
     residual = flat if reference is None else residual  # a change is measured against the size of the reference
-    bank, highest = band_bank(residual, reference), kurtogram_maximum(residual)
-    values, names = over_channels(bank)
+    values, names = over_channels(*band_bank(residual, reference))
+    highest = kurtogram_maximum(residual)
     advance()
     waves = level_waves(residual, reference)
     features = convolution_features(waves)
@@ -315,12 +313,12 @@ def attackers_on(
     ]
 
 
-def over_channels(bank: Bank) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Return mean and largest value over the channels, (records, 2 columns), with their names."""
+def over_channels(bank: np.ndarray, named: Sequence[str]) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Return mean and largest value over the channels of a bank, (records, 2 columns), with their names."""
     with np.errstate(invalid="ignore"):
-        largest = np.nanmax(np.where(np.isfinite(bank.values), bank.values, -np.inf), axis=1, initial=-np.inf)
-    values = np.concatenate([channel_mean(bank.values), np.where(np.isfinite(largest), largest, np.nan)], axis=1)
-    names = [f"{name} ({how} channels)" for how in ("mean of the", "largest of the") for name in bank.names]
+        largest = np.nanmax(np.where(np.isfinite(bank), bank, -np.inf), axis=1, initial=-np.inf)
+    values = np.concatenate([channel_mean(bank), np.where(np.isfinite(largest), largest, np.nan)], axis=1)
+    names = [f"{name} ({how} channels)" for how in ("mean of the", "largest of the") for name in named]
     return values, tuple(names)
 
 

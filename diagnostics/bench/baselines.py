@@ -178,8 +178,7 @@ def _in_chunks(difference: np.ndarray, known: np.ndarray | None) -> tuple[np.nda
     for start in range(0, len(difference), CHUNK):
         rows = slice(start, start + CHUNK)
         highest.append(np.nanmean(kurtogram_maximum(difference[rows]), axis=1))
-        bank = band_bank(difference[rows], None if known is None else known[rows])
-        bands.append(over_channels(bank)[0])
+        bands.append(over_channels(*band_bank(difference[rows], None if known is None else known[rows]))[0])
     return np.concatenate(highest), np.concatenate(bands)
 
 

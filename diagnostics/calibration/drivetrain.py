@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
-from diagnostics.records.gear_train import meshes_of, pair_train
+from diagnostics.records.gear_train import meshes_of
 from siggen.columns.drivetrain import GearTrain
 
 
@@ -64,11 +64,6 @@ class TrainOrders:
         """Of the first mesh."""
         return self.shafts[0].teeth[-1], self.shafts[1].teeth[0]
 
-    @property
-    def gear_order(self) -> float:
-        """Turns of the second shaft."""
-        return self.shafts[1].step
-
 
 def drivetrain(train: GearTrain) -> TrainOrders:
     """Return the shafts and meshes of a gearbox whose teeth are known; it is no planetary set."""
@@ -87,8 +82,3 @@ def drivetrain(train: GearTrain) -> TrainOrders:
             for mesh, (shaft, behind) in zip(meshes, pairwise(found), strict=True)
         ),
     )
-
-
-def pair(teeth: tuple[int, int]) -> TrainOrders:
-    """Return the drivetrain of one pair of gears."""
-    return drivetrain(pair_train(teeth))

@@ -15,7 +15,7 @@ from diagnostics.calibration.healthy_blocks import HealthyBlock
 from diagnostics.calibration.order_record import OrderRecord
 from diagnostics.calibration.path_draws import number_limits
 from diagnostics.recordings.in_rig import in_rig
-from diagnostics.recordings.taken import RecordingFacts, file_channels
+from diagnostics.recordings.taken import RecordingFacts, channel_names, take
 from siggen.errors import UsageError
 
 LINES, AROUND, LEAST_SHOWN = 10, 4, 0.25
@@ -121,7 +121,7 @@ def rig_channels(
                 f"channels of the rig file: received {', '.join(said)}; the rig has the channels {', '.join(names)}"
             )
         return names, dict(said)
-    found = file_channels(source[0], replace(facts, row=source[1], columns={}))
+    found = channel_names(take(source[0], replace(facts, row=source[1], columns={}), say=False))
     if set(names) <= set(found):
         return names, {}
     if len(found) != len(names):

@@ -52,7 +52,7 @@ def audit(
     import json
 
     from diagnostics.audit.audit_page import audit_summary
-    from diagnostics.audit.audit_report import AuditOptions, audit_set, write_audit
+    from diagnostics.audit.audit_report import audit_set, write_audit
     from diagnostics.base.beside import beside
     from diagnostics.base.progress import terminal_stage
     from diagnostics.indicators.own_indicator import load_indicators
@@ -64,7 +64,7 @@ def audit(
     own = load_indicators(indicator)
     dataset = open_set(directory)
     refuse_lives(dataset)
-    found = audit_set(dataset, AuditOptions(seed, reference), own, terminal_stage)
+    found = audit_set(dataset, seed, reference, own, terminal_stage)
     with terminal_stage("page", 1):
         page = write_audit(found, dataset, out or beside(dataset.path, "_audit"))
     if as_json:

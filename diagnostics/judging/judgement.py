@@ -18,7 +18,6 @@ import numpy as np
 
 from diagnostics.statistics.calibration import TemperatureScaling, calibrated, calibration, predictions_of
 from diagnostics.statistics.evaluation import (
-    RESAMPLES,
     UNKNOWN,
     Interval,
     IntervalScores,
@@ -61,7 +60,7 @@ def damage_score(found: Predictions, healthy: str) -> np.ndarray:
     return np.asarray(1.0 - found.probability[:, found.classes.index(healthy)])
 
 
-def detection(found: Predictions, healthy: str, seed: int, resamples: int = RESAMPLES) -> Detection | None:
+def detection(found: Predictions, healthy: str, seed: int) -> Detection | None:
     """Judge predictions as an alarm for damage.
 
     Parameters
@@ -72,8 +71,6 @@ def detection(found: Predictions, healthy: str, seed: int, resamples: int = RESA
         The healthy class.
     seed : int
         Seed of the resamples, the same as of all other scores.
-    resamples : int
-        Number of resamples.
 
     Returns
     -------
@@ -84,7 +81,7 @@ def detection(found: Predictions, healthy: str, seed: int, resamples: int = RESA
     score, positive = damage_score(found, healthy), found.truth != own
     if positive.all() or not positive.any():
         return None
-    weights = bootstrap_weights(found.specimen, seed, resamples)
+    weights = bootstrap_weights(found.specimen, seed)
 
     def judged(chosen: np.ndarray) -> Interval:
         return area(score[chosen], positive[chosen], weights[:, chosen], found.specimen[chosen])
@@ -226,7 +223,6 @@ def comparison(
     second: Predictions,
     seed: int,
     healthy: str | None = None,
-    resamples: int = RESAMPLES,
 ) -> Comparison:
     """Compare the predictions of two classifiers for the same records.
 
@@ -240,8 +236,6 @@ def comparison(
         Seed of the resamples, the same ones for both.
     healthy : str, optional
         The healthy class; without it detection is not compared.
-    resamples : int
-        Number of resamples.
 
     Raises
     ------
@@ -250,7 +244,7 @@ def comparison(
     """
     if not (np.array_equal(first.truth, second.truth) and np.array_equal(first.specimen, second.specimen)):
         raise ValueError("the two predictions are not of the same records in the same order")
-    weights = bootstrap_weights(first.specimen, seed, resamples)
+    weights = bootstrap_weights(first.specimen, seed)
     specimens = int(np.unique(first.specimen).size)
     right = (first.predicted == first.truth).astype(np.float64) - (second.predicted == second.truth)
     areas = macro_auroc(first, weights) - macro_auroc(second, weights)
@@ -265,11 +259,11 @@ def _detection_difference(first: Predictions, second: Predictions, healthy: str,
     return np.asarray(areas[0] - areas[1])
 
 
-def state_auc(found: Predictions, healthy: int, state: int, seed: int, resamples: int = RESAMPLES) -> Interval:
+def state_auc(found: Predictions, healthy: int, state: int, seed: int) -> Interval:
     """Return the AUC of one state against healthy by a classifier's probabilities of the two."""
     chosen = np.isin(found.truth, (healthy, state))
     pair = found.probability[chosen][:, [healthy, state]]
     score = pair[:, 1] / np.maximum(pair.sum(axis=1), 1e-300)
-    weights = bootstrap_weights(found.specimen, seed, resamples)[:, chosen]
+    weights = bootstrap_weights(found.specimen, seed)[:, chosen]
     areas = weighted_auc(score, found.truth[chosen] == state, weights, found.specimen[chosen])
     return interval(areas, int(np.unique(found.specimen[chosen]).size))

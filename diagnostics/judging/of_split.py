@@ -63,7 +63,7 @@ PAIRS = ((REFERENCED, INDICATORS), (NETWORK_REFERENCED, NETWORK), (NETWORK_REFER
 
 @dataclass(frozen=True, slots=True)
 class NetworkOptions:
-    """How to train: what a class is, whether to train the network, where, and with changed paths and noise or not.
+    """How to train: what a class is, whether to train the network, and where.
 
     Attributes
     ----------
@@ -71,8 +71,6 @@ class NetworkOptions:
         Whether to train it at all.
     device : str
         `cpu` or `cuda`.
-    augment : bool
-        Whether training averages pass random paths.
     classes : str
         What every classifier tells apart: `state`, or primary `fault`; healthy ones are one class.
 
@@ -84,7 +82,6 @@ class NetworkOptions:
 
     cnn: bool = True
     device: str = "cpu"
-    augment: bool = True
     classes: str = STATE
 
     def __post_init__(self) -> None:
@@ -308,15 +305,13 @@ def judge_network(
     seed : int
         Seeds weights, paths and bootstrap.
     options : NetworkOptions
-        Device, and whether training averages pass random paths.
+        Device.
     stage : Stage
         Told of every epoch.
     """
     from diagnostics.training.cnn import NetworkSettings, train_network
 
-    plain = NetworkSettings(device=options.device)
-    settings = plain if options.augment else replace(plain, gain_db=0.0)
-    truth = state_index(matrix, split.classes)
+    settings, truth = NetworkSettings(device=options.device), state_index(matrix, split.classes)
 
     def learnt(title: str, target: np.ndarray, chosen: NetworkSettings) -> TrainedNetwork:
         with stage(title, chosen.most_epochs) as advance:
@@ -328,7 +323,7 @@ def judge_network(
     details = {
         "best_epoch": trained.best_epoch,
         "epochs": trained.epochs,
-        "augmented": options.augment,
+        "augmented": settings.gain_db > 0.0,
         "device": options.device,
         "note": trained.note,
         **validation_score(validation),

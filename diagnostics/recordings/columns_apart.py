@@ -6,6 +6,7 @@ Plain, since `numpy.load` parses a header as Python source, which fails in deep 
 from __future__ import annotations
 
 import json
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -35,27 +36,13 @@ def keep_columns(path: Path, folder: Path, row: int | None) -> None:
 
     found = file_columns(path, row)
     refuse_many(path, len(found.values))
-    _keep(found, folder)
-
-
-def _keep(found: Columns, folder: Path) -> None:
-    facts = {
-        "fs_hz": found.fs_hz,
-        "full_scale": found.full_scale,
-        "simulated": found.simulated,
-        "units": dict(found.units),
-        "own": dict(found.own),
-        "layout": dict(found.layout),
-        "notes": list(found.notes),
-        "hint_hz": found.hint_hz,
-    }
-    (folder / "facts.json").write_text(json.dumps({**facts, "names": list(found.values)}), encoding="utf-8")
+    facts = asdict(replace(found, values={})) | {"values": list(found.values)}
+    (folder / "facts.json").write_text(json.dumps(facts), encoding="utf-8")
     for number, column in enumerate(found.values.values()):
         np.asarray(column, dtype=np.float64).tofile(folder / f"{number}.f64")
 
 
 def _columns(folder: Path) -> Columns:
     facts = json.loads((folder / "facts.json").read_text(encoding="utf-8"))
-    names, notes = facts.pop("names"), tuple(facts.pop("notes"))
-    values = {name: np.fromfile(folder / f"{number}.f64") for number, name in enumerate(names)}
-    return Columns(values, notes=notes, **facts)
+    values = {name: np.fromfile(folder / f"{number}.f64") for number, name in enumerate(facts["values"])}
+    return Columns(**{**facts, "values": values, "notes": tuple(facts["notes"])})

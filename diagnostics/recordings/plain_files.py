@@ -13,13 +13,11 @@ import numpy as np
 
 from diagnostics.recordings.recorded_columns import Columns, as_numbers, numbered, refuse_twice
 from diagnostics.recordings.recorder_files import (
-    INCREMENTS,
-    RATES,
     UNITS,
     StatedSignal,
-    rate_from_increment,
     read_hdf5,
     stated_columns,
+    stated_rate_hz,
 )
 from siggen.errors import UsageError
 
@@ -160,7 +158,7 @@ def _tree_signals(
 ) -> Iterator[StatedSignal]:
     """Yield the signals of structures, each with the rate and unit that stand nearest."""
     stated = {name.lower(): value for name, value in tree.items()}
-    rate_hz = next((hz for hz in (_stated_hz(stated, name) for name in (*RATES, *INCREMENTS)) if hz), rate_hz)
+    rate_hz = stated_rate_hz(stated) or rate_hz
     said = next((stated[name] for name in UNITS if isinstance(stated.get(name), str)), None)
     unit = said or unit
     for name, item in tree.items():
@@ -175,17 +173,6 @@ def _tree_signals(
         elif isinstance(value, np.ndarray) and value.ndim in (1, 2) and value.dtype.kind in "biuf" and value.size > 1:
             for called, signal in numbered(value, long).items():
                 yield StatedSignal((called,), signal, rate_hz, unit)
-
-
-def _stated_hz(stated: Mapping[str, Any], name: str) -> float | None:
-    for key in (name, f"{name}_hz", f"{name}_s"):
-        value = np.asarray(stated.get(key, np.nan))
-        if value.size != 1 or value.dtype.kind not in "biuf":
-            continue
-        number = float(value.reshape(-1)[0])
-        if np.isfinite(number) and number > 0.0:
-            return number if name in RATES else rate_from_increment(number)
-    return None
 
 
 def read_wav(path: Path) -> Columns:

@@ -252,20 +252,21 @@ def _signals(data: Any, about: Mapping[str, Mapping[str, float]]) -> list[Stated
     long = data.name.lstrip("/")
     short = numbered(data[()], long.rpartition("/")[2])
     whole = numbered(data[()], long)
-    rate_hz, unit = _stated_rate_hz(stated), _unit(stated)
+    rate_hz, unit = stated_rate_hz(stated), _unit(stated)
     return [
         StatedSignal((name, path), values, rate_hz, unit)
         for (name, values), path in zip(short.items(), whole, strict=True)
     ]
 
 
-def _stated_rate_hz(stated: dict[str, Any]) -> float | None:
-    for name in RATES:
-        number = _number(stated.get(name, stated.get(f"{name}_hz")))
-        if number is not None and np.isfinite(number) and number > 0.0:
-            return number
-    steps = (rate_from_increment(_number(stated.get(name, stated.get(f"{name}_s")))) for name in INCREMENTS)
-    return next((rate_hz for rate_hz in steps if rate_hz), None)
+def stated_rate_hz(stated: Mapping[str, Any]) -> float | None:
+    """Return the rate [Hz] that facts by lower-case names state: one of `RATES`, else a step of `INCREMENTS`."""
+    for name in (*RATES, *INCREMENTS):
+        for key in (name, f"{name}_hz", f"{name}_s"):
+            number = _number(stated.get(key))
+            if number is not None and math.isfinite(number) and number > 0.0:
+                return number if name in RATES else rate_from_increment(number)
+    return None
 
 
 def _number(value: Any) -> float | None:

@@ -198,17 +198,6 @@ def take(path: Path, facts: RecordingFacts, *, say: bool = True) -> TakenRecordi
     return taken
 
 
-def file_channels(path: Path, facts: RecordingFacts) -> tuple[str, ...]:
-    """Return the vibration channels of a file whose user names none, by the names that `read_recording` takes.
-
-    Raises
-    ------
-    UsageError
-        If the file cannot be read, or holds no such column, or very many.
-    """
-    return channel_names(take(path, facts, say=False))
-
-
 def channel_names(taken: TakenRecording) -> tuple[str, ...]:
     """Return the names of the vibration channels of what was taken; see `channel_columns`."""
     return tuple(channel_columns(taken))

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from diagnostics.scoring.grade import grades, probabilities
-from diagnostics.scoring.task import Columns, Measure, Taken, Task
+from diagnostics.scoring.task import Columns, Measure, Taken, Task, every_record
 from diagnostics.scoring.truth import Truth
 
 CONFIDENCE = "confidence"
@@ -26,10 +26,6 @@ def _answers(columns: Columns, truth: Truth) -> np.ndarray | None:
         return None
     sure = columns[CONFIDENCE] if CONFIDENCE in columns else named.max(axis=1)
     return np.stack([sure, (named.argmax(axis=1) != truth.label).astype(np.float64)], axis=1)
-
-
-def _parts(truth: Truth) -> dict[str, np.ndarray]:
-    return {"all": np.ones(truth.label.size, dtype=bool)} if np.unique(truth.label).size > 1 else {}
 
 
 def risks(answers: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -66,9 +62,9 @@ ABSTAIN = Task(
     f"those of grade, and {CONFIDENCE} (rises with certainty) if it is not the largest probability",
     lambda truth: (Taken(CONFIDENCE),) if truth.told else (),
     _answers,
-    _parts,
+    every_record,
     (
-        Measure("mean risk over all coverages", _mean_risk, lambda truth: truth.gearboxes, _chance, falls=True),
-        Measure(f"risk at {COVERAGE:.0%} coverage", _risk_at, lambda truth: truth.gearboxes, _chance, falls=True),
+        Measure("mean risk over all coverages", _mean_risk, _chance, falls=True),
+        Measure(f"risk at {COVERAGE:.0%} coverage", _risk_at, _chance, falls=True),
     ),
 )

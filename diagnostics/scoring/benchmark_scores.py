@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,9 +18,9 @@ from diagnostics.scoring.benchmark import BASELINES, PER_PART, Benchmark, Sealed
 from diagnostics.scoring.detect import DAMAGE
 from diagnostics.scoring.grade import PROBABILITY
 from diagnostics.scoring.prediction_file import (
-    CLASSIFIER,
     RECORD,
     baselines_file,
+    by_classifier,
     check_identity,
     checked_columns,
     prediction_table,
@@ -147,7 +147,7 @@ def part_columns(
     """
     check_identity(table, benchmark.digest, where)
     problems, found = _strangers(table, parts), dict[str, dict[str, Answers]]()
-    for own, rows in {} if problems else _by_classifier(table, name).items():
+    for own, rows in {} if problems else by_classifier(table, name).items():
         for place, part in enumerate(parts):
             asked = part.rows(rows, place)
             if asked.num_rows:
@@ -157,13 +157,6 @@ def part_columns(
     if problems:
         raise UsageError(refusal(where, problems, parts[0].truth))
     return found
-
-
-def _by_classifier(table: pa.Table, name: str) -> Mapping[str, pa.Table]:
-    if CLASSIFIER not in table.column_names:
-        return {name: table}
-    names = [str(found) for found in pc.unique(table.column(CLASSIFIER)).to_pylist()]
-    return {found: table.filter(pc.equal(table.column(CLASSIFIER), found)) for found in names}
 
 
 def _strangers(table: pa.Table, parts: Sequence[JudgedPart]) -> list[str]:

@@ -60,8 +60,8 @@ DETECT = Task(
         Measure(
             "AUC",
             lambda answers, truth, weights: weighted_auc(answers, _positive(truth), weights, truth.specimen),
-            lambda truth: fewest_gearboxes(_positive(truth), truth.specimen),
             lambda _: 0.5,
+            lambda truth: fewest_gearboxes(_positive(truth), truth.specimen),
             ranks=True,
         ),
     ),

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from diagnostics.records.state_classes import CLASS
-from diagnostics.scoring.task import Columns, Measure, Problem, Taken, Task
+from diagnostics.scoring.task import Columns, Measure, Problem, Taken, Task, every_record
 from diagnostics.scoring.truth import Truth
 from diagnostics.statistics.evaluation import Predictions, balanced_accuracy, macro_auroc
 
@@ -57,10 +57,6 @@ def _problems(columns: Columns, truth: Truth) -> Iterator[Problem]:
         yield f"the sum of the probabilities is {total[bad][0]:g}", bad, "1"
 
 
-def _every(truth: Truth) -> dict[str, np.ndarray]:
-    return {"all": np.ones(truth.label.size, dtype=bool)} if np.unique(truth.label).size > 1 else {}
-
-
 def _as_predictions(answers: np.ndarray, truth: Truth) -> Predictions:
     return Predictions(truth.classes, truth.label, answers, truth.specimen)
 
@@ -70,18 +66,16 @@ GRADE = Task(
     f"{PROBABILITY}<class> of every class (probabilities), or {CLASS} (its name)",
     _columns,
     grades,
-    _every,
+    every_record,
     (
         Measure(
             "balanced accuracy",
             lambda answers, truth, weights: balanced_accuracy(_as_predictions(answers, truth), weights),
-            lambda truth: truth.gearboxes,
             lambda truth: 1.0 / np.unique(truth.label).size,
         ),
         Measure(
             "macro AUROC",
             lambda answers, truth, weights: macro_auroc(_as_predictions(answers, truth), weights),
-            lambda truth: truth.gearboxes,
             lambda _: 0.5,
             ranks=True,
         ),

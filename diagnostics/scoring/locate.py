@@ -94,13 +94,11 @@ LOCATE = Task(
         Measure(
             "share of right gears",
             lambda answers, _, weights: weighted_mean(answers[:, 0], weights),
-            lambda truth: truth.gearboxes,
             _chance_of_gear,
         ),
         Measure(
             "share of right teeth",
             lambda answers, _, weights: weighted_mean(answers[:, 1], weights),
-            lambda truth: truth.gearboxes,
             _chance_of_tooth,
         ),
     ),

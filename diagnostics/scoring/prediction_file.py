@@ -221,6 +221,14 @@ def _usable(table: pa.Table, where: Any) -> pa.Table:
     return table.set_column(table.column_names.index(CLASSIFIER), CLASSIFIER, names)
 
 
+def by_classifier(table: pa.Table, name: str) -> dict[str, pa.Table]:
+    """Return the rows of every classifier of a table; of the only one under the given name."""
+    if CLASSIFIER not in table.column_names:
+        return {name: table}
+    column = table.column(CLASSIFIER)
+    return {str(own): table.filter(pc.equal(column, own)) for own in pc.unique(column).to_pylist()}
+
+
 def baselines_file(folder: Path) -> Path:
     """Return the file of predictions in a folder of `report`.
 

@@ -6,7 +6,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from diagnostics.scoring.task import Columns, Measure, Problem, Taken, Task, weighted_mean
+from diagnostics.scoring.task import (
+    Columns,
+    Measure,
+    Problem,
+    Taken,
+    Task,
+    by_record,
+    error_of_one_number,
+    weighted_mean,
+)
 from diagnostics.scoring.truth import Truth, is_lives
 from siggen.dataset.reading import Dataset
 
@@ -20,10 +29,7 @@ LAST = 1.0 / 3.0
 def _facts(dataset: Dataset, truth: Truth) -> dict[str, np.ndarray]:
     if not is_lives(dataset):
         return {}
-    table = dataset.life("inspections", truth.split)
-    of_record = dict(zip(*(table.column(name).to_pylist() for name in ("record_id", RUL)), strict=True))
-    found = [of_record.get(record) for record in truth.record_id.tolist()]
-    return {RUL: np.array([np.nan if one is None else one for one in found], dtype=np.float64)}
+    return {RUL: by_record(dataset.life("inspections", truth.split), RUL, truth)}
 
 
 def _answers(columns: Columns, _truth: Truth) -> np.ndarray | None:
@@ -56,12 +62,6 @@ def _problems(columns: Columns, truth: Truth) -> Iterator[Problem]:
             yield f"{LOW} is above {HIGH}", bad, "the lower limit below the upper one"
 
 
-def _error_of_one_number(truth: Truth) -> float:
-    """Return the error of the one number that is best for all of these inspections: their median."""
-    life = truth.facts[RUL]
-    return float(np.abs(life - np.median(life)).mean())
-
-
 def _inside(answers: np.ndarray, truth: Truth, weights: np.ndarray) -> np.ndarray:
     """Return the share of lives between the limits; NaN where no limits were given."""
     inside = (answers[:, 0] <= truth.facts[RUL]) & (truth.facts[RUL] <= answers[:, 2])
@@ -78,12 +78,11 @@ REMAINING_LIFE = Task(
         Measure(
             "mean absolute error [h]",
             lambda answers, truth, weights: weighted_mean(np.abs(answers[:, 1] - truth.facts[RUL]), weights),
-            lambda truth: truth.gearboxes,
-            _error_of_one_number,
+            lambda truth: error_of_one_number(truth.facts[RUL]),
             is_share=False,
             falls=True,
         ),
-        Measure("share between the limits (0.8 is right)", _inside, lambda truth: truth.gearboxes, lambda _: 0.8),
+        Measure("share between the limits (0.8 is right)", _inside, lambda _: 0.8),
     ),
     facts=_facts,
     problems=_problems,

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.compute as pc
 
 from diagnostics.judging.judgement import TITLES
 from diagnostics.records.record_classes import STATE, check_dataset
@@ -22,6 +21,7 @@ from diagnostics.scoring.prediction_file import (
     CLASSIFIER,
     baselines_beside,
     baselines_file,
+    by_classifier,
     check_classes,
     check_identity,
     matched_columns,
@@ -247,11 +247,9 @@ def _by_classifier(table: pa.Table, truth: Truth, identity: str, where: Any, nam
     check_identity(table, identity, where)
     if truth.told:
         check_classes(table, truth.told.kind, where)
-    if CLASSIFIER not in table.column_names:
-        return {name: matched_columns(table, truth, where)}
-    names = [str(found) for found in pc.unique(table.column(CLASSIFIER)).to_pylist()]
-    parts = {found: table.filter(pc.equal(table.column(CLASSIFIER), found)) for found in names}
-    return {found: matched_columns(part, truth, f"{where}, {found}") for found, part in parts.items()}
+    said = f"{where}, {{}}" if CLASSIFIER in table.column_names else str(where)
+    parts = by_classifier(table, name)
+    return {own: matched_columns(part, truth, said.format(own)) for own, part in parts.items()}
 
 
 def _task_rows(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from operator import attrgetter
 
 import numpy as np
 import pyarrow as pa
@@ -18,16 +19,6 @@ from siggen.dataset.reading import Dataset
 Columns = Mapping[str, np.ndarray]
 Problem = tuple[str, np.ndarray, str]
 """What is wrong, in which records (n,) bool, and what is allowed."""
-
-
-def no_problems(_columns: Columns, _truth: Truth) -> Iterator[Problem]:
-    """Yield nothing."""
-    return iter(())
-
-
-def no_facts(_dataset: Dataset, _truth: Truth) -> dict[str, np.ndarray]:
-    """Return nothing."""
-    return {}
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,10 +76,10 @@ class Measure:
     name : str
     samples : callable
         Answers of n records, their truth and weights (b, n); returns the score for every row of weights, (b,).
-    gearboxes : callable
-        How many gearboxes the limits count.
     chance : callable
         What an answer without knowledge reaches.
+    gearboxes : callable
+        How many gearboxes the limits count; all unless told.
     ranks : bool
         Whether it orders records by their numbers, which names of classes alone do not allow.
     is_share : bool
@@ -99,8 +90,8 @@ class Measure:
 
     name: str
     samples: Callable[[np.ndarray, Truth, np.ndarray], np.ndarray]
-    gearboxes: Callable[[Truth], int]
     chance: Callable[[Truth], float]
+    gearboxes: Callable[[Truth], int] = attrgetter("gearboxes")
     ranks: bool = False
     is_share: bool = True
     falls: bool = False
@@ -134,11 +125,28 @@ class Task:
     answers: Callable[[Columns, Truth], np.ndarray | None]
     parts: Callable[[Truth], dict[str, np.ndarray]]
     measures: tuple[Measure, ...]
-    facts: Callable[[Dataset, Truth], dict[str, np.ndarray]] = no_facts
-    problems: Callable[[Columns, Truth], Iterator[Problem]] = no_problems
+    facts: Callable[[Dataset, Truth], dict[str, np.ndarray]] = lambda _dataset, _truth: {}
+    problems: Callable[[Columns, Truth], Iterator[Problem]] = lambda _columns, _truth: iter(())
 
 
 def weighted_mean(values: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """Return the mean of values (n,) for every row of weights (b, n), (b,); NaN without any weight."""
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.asarray(weights @ values / weights.sum(axis=1))
+
+
+def every_record(truth: Truth) -> dict[str, np.ndarray]:
+    """Return all records as the part `all`; none where they are of one class."""
+    return {"all": np.ones(truth.label.size, dtype=bool)} if np.unique(truth.label).size > 1 else {}
+
+
+def error_of_one_number(values: np.ndarray) -> float:
+    """Return the mean error of the one number that is best for all values (n,): their median."""
+    return float(np.abs(values - np.median(values)).mean())
+
+
+def by_record(table: pa.Table, name: str, truth: Truth) -> np.ndarray:
+    """Return a column of a table by the numbers of records, (n,) float64; NaN where it says nothing of one."""
+    of_record = dict(zip(*(table.column(one).to_pylist() for one in ("record_id", name)), strict=True))
+    found = (of_record.get(record) for record in truth.record_id.tolist())
+    return np.array([np.nan if one is None else one for one in found], dtype=np.float64)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.statistics.evaluation import RESAMPLES, Interval, Predictions, bootstrap_weights, interval
+from diagnostics.statistics.evaluation import Interval, Predictions, bootstrap_weights, interval
 
 BINS = 10
 SMALLEST_PROBABILITY = 1e-12
@@ -141,7 +141,7 @@ def expected_calibration_error(predictions: Predictions, weights: np.ndarray) ->
     return np.asarray(np.abs(sums).sum(axis=0) / weights.sum(axis=1))
 
 
-def honest_calibration_error(predictions: Predictions, seed: int, draws: int = HONEST_DRAWS) -> float:
+def honest_calibration_error(predictions: Predictions, seed: int) -> float:
     """Return the mean expected calibration error with labels drawn from the probabilities themselves.
 
     The calibration error is a mean of absolute gaps, so that chance alone makes it positive; only what exceeds this
@@ -152,7 +152,7 @@ def honest_calibration_error(predictions: Predictions, seed: int, draws: int = H
     ones = np.ones((1, predictions.truth.size))
     found = [
         expected_calibration_error(replace(predictions, truth=(u[:, None] >= edges).sum(axis=1)), ones)[0]
-        for u in rng.random((draws, predictions.truth.size))
+        for u in rng.random((HONEST_DRAWS, predictions.truth.size))
     ]
     return float(np.mean(found))
 
@@ -167,9 +167,9 @@ def brier_score(predictions: Predictions, weights: np.ndarray) -> np.ndarray:
     return np.asarray(weights @ square / weights.sum(axis=1))
 
 
-def calibration(test: Predictions, temperature: float, seed: int, resamples: int = RESAMPLES) -> TemperatureScaling:
+def calibration(test: Predictions, temperature: float, seed: int) -> TemperatureScaling:
     """Judge the calibration of uncalibrated test predictions with intervals from resampled specimens."""
-    weights = bootstrap_weights(test.specimen, seed, resamples)
+    weights = bootstrap_weights(test.specimen, seed)
     specimens = int(np.unique(test.specimen).size)
     changed = calibrated(test, temperature)
 

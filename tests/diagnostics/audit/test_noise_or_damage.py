@@ -78,7 +78,7 @@ def test_small_damage_counts_only_where_large_damage_does_no_more(
     effect = small_db * (STATES == "small") + large_db * (STATES == "large")
     levels = {f"level {k}": 10.0 * SPECIMEN + scatter[:, k] + effect * (k == 2) for k in range(4)}
     found = measured(np.zeros(SPECIMEN.size), np.zeros(SPECIMEN.size), levels)
-    assert [sizes.smallest for sizes in sized_states(found)] == ["small"]
+    assert [smallest for smallest, _ in sized_states(found)] == ["small"]
     (attacker,) = small_damage_attackers(found, reference_records(found))
     rows = np.flatnonzero(attacker.usable)
     of_state, specimen = STATES[rows] == "small", SPECIMEN[rows]

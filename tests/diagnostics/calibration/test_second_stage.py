@@ -7,16 +7,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnostics.calibration.drivetrain import pair
+from diagnostics.calibration.drivetrain import TrainOrders, drivetrain
 from diagnostics.calibration.order_record import OrderRecord, line_groups, order_record
 from diagnostics.calibration.second_stage import second_stage, stage_lines, wave_lines
 from diagnostics.calibration.shaft_multiples import machine_multiples
+from diagnostics.records.gear_train import pair_train
 
 FS_HZ, SAMPLES = 12_800.0, 25_600
 HIGHEST_ORDER = 170.0
 TIME_S = np.arange(SAMPLES) / FS_HZ
 SPEEDS_HZ = (30.0, 31.3, 32.9)
 Comb = tuple[str, int, float]
+
+
+def pair(teeth: tuple[int, int]) -> TrainOrders:
+    return drivetrain(pair_train(teeth))
 
 
 def records(
@@ -81,7 +86,13 @@ def test_shaft_teeth_and_levels_of_a_stage_are_found_again(teeth: tuple[int, int
 @pytest.mark.parametrize("teeth", [(18, 47), pytest.param((20, 40), marks=pytest.mark.slow)])
 def test_errors_of_the_teeth_pass_for_no_stage(teeth: tuple[int, int]) -> None:
     for seed in range(10, 16):
-        assert second_stage(machine_multiples(records(seed, teeth, None), pair(teeth)), pair(teeth)) is None
+        assert (
+            second_stage(
+                machine_multiples(records(seed, teeth, None), pair(teeth)),
+                pair(teeth),
+            )
+            is None
+        )
 
 
 def test_a_stage_whose_three_lines_one_channel_shows_is_found() -> None:

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from diagnostics.cli.app import app
 from diagnostics.recordings.measured_recording import read_recording
 from diagnostics.recordings.roles import ColumnUse
-from diagnostics.recordings.taken import RecordingFacts, file_channels, take
+from diagnostics.recordings.taken import RecordingFacts, channel_names, take
 from siggen.errors import UsageError
 
 FS_HZ, SAMPLES = 25_600, 5_000
@@ -42,7 +42,7 @@ def test_the_rate_comes_from_the_times_however_they_are_rounded(
     tmp_path: Path, header: str, scale: float, digits: int
 ) -> None:
     file = write(tmp_path, [f"{scale * at:.{digits}f}" for at in TIMES_S], header)
-    assert file_channels(file, RecordingFacts()) == ("lid",)
+    assert channel_names(take(file, RecordingFacts(), say=False)) == ("lid",)
     found = read_recording(file, ("lid",), RecordingFacts(unit="g"))
     # five digits behind the point leave the rate open by 1e-5 s in 0.2 s
     assert found.fs_hz == (FS_HZ if digits > 5 or scale > 1.0 else pytest.approx(FS_HZ, rel=1e-4))
@@ -50,7 +50,7 @@ def test_the_rate_comes_from_the_times_however_they_are_rounded(
 
 def test_a_counter_of_samples_is_no_channel_and_states_no_rate(tmp_path: Path) -> None:
     file = write(tmp_path, [str(k) for k in range(SAMPLES)], "sample;lid")
-    assert file_channels(file, RecordingFacts()) == ("lid",)
+    assert channel_names(take(file, RecordingFacts(), say=False)) == ("lid",)
     assert take(file, RecordingFacts()).fs_hz is None
     with pytest.raises(UsageError, match="--fs 51200"):
         read_recording(file, ("lid",), RecordingFacts(unit="g"))
@@ -77,7 +77,7 @@ def test_an_angle_in_radians_states_no_rate_however_evenly_it_rises(tmp_path: Pa
     angle = 0.7 * np.arange(SAMPLES)
     np.savez(tmp_path / "run.npz", time=TIMES_S, angle_rad=angle, lid=rng.standard_normal(SAMPLES))
     assert read_recording(tmp_path / "run.npz", ("lid",), RecordingFacts(unit="g")).fs_hz == FS_HZ
-    assert file_channels(tmp_path / "run.npz", RecordingFacts()) == ("lid",)
+    assert channel_names(take(tmp_path / "run.npz", RecordingFacts(), say=False)) == ("lid",)
 
 
 def test_an_angle_that_rises_evenly_beside_the_time_leaves_the_rate_to_the_time(tmp_path: Path) -> None:

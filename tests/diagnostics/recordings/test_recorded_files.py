@@ -12,7 +12,7 @@ import pytest
 from scipy.io import savemat, wavfile
 
 from diagnostics.recordings.measured_recording import read_recording
-from diagnostics.recordings.taken import RecordingFacts, file_channels
+from diagnostics.recordings.taken import RecordingFacts, channel_names, take
 from siggen.errors import UsageError
 
 FS_HZ = 8000
@@ -187,6 +187,6 @@ def test_a_unit_in_a_name_or_in_a_row_is_that_of_the_values(above: str, factor: 
 )
 def test_columns_of_other_quantities_are_never_vibration(other: str, tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text(f"lid,{other}\n" + "1.5,0.0\n0.5,0.0001\n-1.0,0.0002\n2.0,0.0003\n")
-    assert file_channels(tmp_path / "run.csv", RecordingFacts()) == ("lid",)
+    assert channel_names(take(tmp_path / "run.csv", RecordingFacts(), say=False)) == ("lid",)
     with pytest.raises(UsageError, match=r"is a .*allowed are columns of vibration"):
         read_recording(tmp_path / "run.csv", ("a",), RecordingFacts(fs_hz=10_000.0, unit="g", columns={"a": other}))
