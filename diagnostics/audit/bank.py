@@ -29,8 +29,7 @@ from diagnostics.base.seeding import Purpose, generator
 from diagnostics.judging.evaluation import Design, Entry, HeldOut, held_out, held_out_values, judged_rows
 from diagnostics.page.wording import decimal, limits
 from diagnostics.records.state_classes import HEALTHY, SHAM, damage_kind
-from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.indicator_statistics import UNDEFINED
+from diagnostics.statistics.evaluation import UNDEFINED, Interval
 
 DESIGN = Design(folds=4, owner=1000, deals=3, fewest=2)
 PERMUTATIONS = 499

@@ -34,6 +34,7 @@ from diagnostics.audit.finding import must_not_tell
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.indicators.background_levels import HIGHEST_NOISE_SHARE, LOWEST_NOISE_HZ, NOISE_BANDS, NOISE_LEVELS
 from diagnostics.records.sample_bytes import BYTES
+from diagnostics.statistics.evaluation import mean_of_defined
 from siggen.keys.column import Role
 
 FEW_DIGITS = 12
@@ -340,8 +341,7 @@ def _between_channels(noise: dict[str, np.ndarray], channels: tuple[str, ...]) -
     """Return the noise of every channel less the mean over those that are defined."""
     found: dict[str, np.ndarray] = {}
     for name, values in noise.items():
-        defined = np.isfinite(values)
-        mean = np.where(defined, values, 0.0).sum(axis=1) / np.maximum(defined.sum(axis=1), 1)
+        mean = mean_of_defined(values, axis=1)
         found |= {f"{name} of {channel}": values[:, k] - mean for k, channel in enumerate(channels)}
     return found if len(channels) > 1 else {}
 

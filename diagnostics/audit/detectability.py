@@ -25,7 +25,15 @@ from diagnostics.base.seeding import Purpose, generator
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.judging.evaluation import Entry, pooled_scores
 from diagnostics.records.state_classes import HEALTHY, damage_kind
-from diagnostics.statistics.evaluation import Interval, area_interval, bootstrap_weights, weighted_auc
+from diagnostics.statistics.evaluation import (
+    UNDEFINED,
+    Interval,
+    area_interval,
+    bootstrap_weights,
+    fewest_gearboxes,
+    mean_of_defined,
+    weighted_auc,
+)
 from diagnostics.statistics.indicator_statistics import best_by_state, separability
 
 LEVELS, PLAIN, ADDED = ("rms", "sideband_index"), ("kurtosis", "fm4"), ("energy_ratio", "sideband_ratio")
@@ -60,7 +68,7 @@ def features(measured: MeasuredSet, *, paired: bool = False) -> np.ndarray:
     columns = [*(_log(values) for values in _taken(measured, LEVELS)), *_taken(measured, PLAIN)]
     if paired:
         columns += _taken(measured, ADDED)
-    found = np.stack([channel_mean(column) for column in columns], axis=1)
+    found = np.stack([mean_of_defined(column, axis=1) for column in columns], axis=1)
     if not paired:
         return found
     reference = reference_records(measured)
@@ -98,15 +106,6 @@ def _log(values: np.ndarray) -> np.ndarray:
     return np.log10(np.where(values > 0, values, np.nan))
 
 
-def channel_mean(values: np.ndarray) -> np.ndarray:
-    """Return the mean over channels (n, channels) that are defined; NaN without any."""
-    defined = np.isfinite(values)
-    with np.errstate(invalid="ignore"):
-        return np.asarray(
-            np.where(defined, values, 0.0).sum(axis=1) / np.where(defined.any(axis=1), defined.sum(axis=1), np.nan)
-        )
-
-
 def detections(measured: MeasuredSet, values: np.ndarray, seed: int = 0) -> list[Detectability]:
     """Return the detection of every damaged state, by fault and profile length.
 
@@ -124,12 +123,12 @@ def detections(measured: MeasuredSet, values: np.ndarray, seed: int = 0) -> list
     for state in dict.fromkeys(labels["state"][~measured.healthy].tolist()):
         chosen = usable & (measured.healthy | (labels["state"] == state))
         specimen, positive = labels["specimen_id"][chosen], ~measured.healthy[chosen]
-        smaller = min(np.unique(specimen[side]).size for side in (positive, ~positive))
+        smaller = fewest_gearboxes(positive, specimen)
         count = int(np.unique(specimen).size)
         auc = (
             area_interval(state_auc(values[chosen], positive, specimen, seed), smaller)
             if smaller >= FEWEST_SPECIMENS
-            else Interval(math.nan, math.nan, math.nan)
+            else UNDEFINED
         )
         rows = labels["state"] == state
         sizes = damage_sizes(measured, rows)
@@ -160,10 +159,7 @@ def state_auc(values: np.ndarray, positive: np.ndarray, specimen: np.ndarray, se
         entry = Entry("", BalancedLogistic, values[used], used[used])
         score = pooled_scores(entry, positive[used], specimen[used], fold[used])[0]
         areas.append(weighted_auc(score, positive[used], weights[:, used], specimen[used]))
-    defined = np.isfinite(areas)
-    with np.errstate(invalid="ignore"):
-        total = np.where(defined, areas, 0.0).sum(axis=0)
-        return np.asarray(total / np.where(defined.any(axis=0), defined.sum(axis=0), np.nan))
+    return mean_of_defined(np.array(areas))
 
 
 def dealt(specimen: np.ndarray, seed: int, repeat: int) -> tuple[np.ndarray, np.ndarray]:
@@ -306,16 +302,12 @@ def held_out_auc(matrix: FeatureMatrix, state: str, halves: np.ndarray) -> float
     labels = matrix.labels
     chosen = (labels["fault"] == HEALTHY) | (labels["state"] == state)
     specimen, positive = labels["specimen_id"][chosen], labels["state"][chosen] == state
-    if min(_count(specimen[positive]), _count(specimen[~positive])) < FEWEST_SPECIMENS:
+    if fewest_gearboxes(positive, specimen) < FEWEST_SPECIMENS:
         return math.nan
     areas = np.stack(
         [_areas(values, positive, halves[:, chosen], specimen) for values in matrix.values[chosen].T], axis=0
     )
     return _mean_of_the_chosen(areas)
-
-
-def _count(specimen: np.ndarray) -> int:
-    return int(np.unique(specimen).size)
 
 
 def _areas(values: np.ndarray, positive: np.ndarray, weights: np.ndarray, specimen: np.ndarray) -> np.ndarray:

@@ -34,11 +34,11 @@ from diagnostics.audit.averaged_lines import (
     residual_lines,
     whitened,
 )
-from diagnostics.audit.detectability import channel_mean
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.base.extras import missing_packages
 from diagnostics.judging.evaluation import Entry
 from diagnostics.judging.learners import all_columns, best_column
+from diagnostics.statistics.evaluation import mean_of_defined
 from diagnostics.training.average_rows import AveragedRecords, padded_lines
 from diagnostics.training.splits import SpecimenSplit
 
@@ -307,7 +307,7 @@ def attackers_on(
     return [
         best_column(f"best band{suffix}", values, names),
         all_columns(f"all bands{suffix}", values),
-        best_column(f"kurtogram{suffix}", channel_mean(highest)[:, None], ("",)),
+        best_column(f"kurtogram{suffix}", mean_of_defined(highest, axis=1)[:, None], ("",)),
         all_columns(f"random convolutions{suffix}", features),
         *(attacker for attacker in (teeth, network) if attacker),
     ]
@@ -317,7 +317,7 @@ def over_channels(bank: np.ndarray, named: Sequence[str]) -> tuple[np.ndarray, t
     """Return mean and largest value over the channels of a bank, (records, 2 columns), with their names."""
     with np.errstate(invalid="ignore"):
         largest = np.nanmax(np.where(np.isfinite(bank), bank, -np.inf), axis=1, initial=-np.inf)
-    values = np.concatenate([channel_mean(bank), np.where(np.isfinite(largest), largest, np.nan)], axis=1)
+    values = np.concatenate([mean_of_defined(bank, axis=1), np.where(np.isfinite(largest), largest, np.nan)], axis=1)
     names = [f"{name} ({how} channels)" for how in ("mean of the", "largest of the") for name in named]
     return values, tuple(names)
 

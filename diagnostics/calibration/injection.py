@@ -109,16 +109,19 @@ def injected_rows(
 
 
 def _recorded(block: HealthyBlock) -> dict[str, Any]:
-    labels = {"state": "healthy", "fault": "healthy", "severity": "healthy", "faulty_gear": "none", "repeat": 0}
-    nothing = {"simulated_gearbox": NO_GEARBOX, "path_number": NO_GEARBOX, "identity": ""}
-    unknown = {"difference_db": -np.inf, "difference_torque_nm": np.nan}
     return {
-        **_origin(block, RECORDED),
-        **labels,
+        **_row(block, RECORDED, block.channels),
+        "state": "healthy",
+        "fault": "healthy",
+        "severity": "healthy",
+        "faulty_gear": "none",
+        "repeat": 0,
         **dict.fromkeys(OF_DAMAGE, 0.0),
-        **nothing,
-        **unknown,
-        **_signals(block, block.channels),
+        "simulated_gearbox": NO_GEARBOX,
+        "path_number": NO_GEARBOX,
+        "identity": "",
+        "difference_db": -np.inf,
+        "difference_torque_nm": np.nan,
     }
 
 
@@ -126,26 +129,21 @@ def _injected(block: HealthyBlock, difference: DamageEffect, start: int, gearbox
     added = sum(float(np.mean(signal**2)) for signal in difference.channels.values())
     own = sum(float(np.var(signal)) for signal in block.channels.values())
     numbers = [value for name, value in difference.labels.items() if name.startswith("path_number_")]
-    labels = ("state", "fault", "severity", "faulty_gear", *OF_DAMAGE)
     return {
-        **_origin(block, INJECTED),
-        **{name: difference.labels[name] for name in labels},
+        **_row(block, INJECTED, injected(block, difference, start)),
+        **{name: difference.labels[name] for name in ("state", "fault", "severity", "faulty_gear", *OF_DAMAGE)},
         "repeat": repeat,
         "simulated_gearbox": gearbox,
         "path_number": int(numbers[0]) if numbers else NO_GEARBOX,
         "identity": difference.identity,
         "difference_db": 10.0 * float(np.log10(max(added, 1e-30) / own)),
         "difference_torque_nm": float(difference.labels["torque_nm"]),
-        **_signals(block, injected(block, difference, start)),
     }
 
 
-def _origin(block: HealthyBlock, origin: str) -> dict[str, Any]:
-    return {"recording": block.name, "origin": origin}
-
-
-def _signals(block: HealthyBlock, channels: Mapping[str, np.ndarray]) -> dict[str, Any]:
-    return {"signals": tuple(channels.values()), "tacho_s": block.pulses_s}
+def _row(block: HealthyBlock, origin: str, channels: Mapping[str, np.ndarray]) -> dict[str, Any]:
+    signals = tuple(channels.values())
+    return {"recording": block.name, "origin": origin, "signals": signals, "tacho_s": block.pulses_s}
 
 
 def write_injected(

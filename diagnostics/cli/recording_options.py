@@ -186,7 +186,9 @@ def recordings_of(said: Sequence[str]) -> list[Source]:
     found = [source for one in said for source in file_rows(one)]
     if not any(path.is_file() for path, _ in found):
         first = found[0][0]
-        raise UsageError(f"{first}: {'is a folder; give the file of one recording' if first.is_dir() else 'no such file'}")
+        raise UsageError(
+            f"{first}: {'is a folder; give the file of one recording' if first.is_dir() else 'no such file'}"
+        )
     return found
 
 

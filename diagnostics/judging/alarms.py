@@ -30,7 +30,7 @@ from diagnostics.judging.of_split import Training
 from diagnostics.records.gear_train import PAIR, GearNames
 from diagnostics.records.state_classes import CLASS, HEALTHY, SHAM, damage_kinds, ordered_states
 from diagnostics.statistics.detectable_size import detection_curve, size_at, weighted_quantile
-from diagnostics.statistics.evaluation import Interval, area, area_interval, bootstrap_weights
+from diagnostics.statistics.evaluation import Interval, area, area_interval, bootstrap_weights, fewest_gearboxes
 from diagnostics.statistics.indicator_statistics import size_interval
 from diagnostics.training.feature_classifier import DEFAULT_STRENGTH
 from diagnostics.training.referenced import healthy_referenced
@@ -396,8 +396,7 @@ def evaluate(model: Any, data: FeatureMatrix, *, beside: bool = False, seed: int
 
 def too_few(matrix: FeatureMatrix) -> bool:
     """Return whether fewer than four gearboxes have healthy, or damaged, records."""
-    damaged = matrix.labels["fault"] != HEALTHY
-    return min(np.unique(matrix.groups[damaged == side]).size for side in (False, True)) < FEWEST_SPECIMENS
+    return fewest_gearboxes(matrix.labels["fault"] != HEALTHY, matrix.groups) < FEWEST_SPECIMENS
 
 
 def _network(

@@ -166,8 +166,7 @@ def judged_rows(entry: Entry, healthy: np.ndarray, state: np.ndarray, specimen: 
     specimen : (records,) int
     """
     rows = np.flatnonzero(entry.usable & (healthy | state))
-    counts = [np.unique(specimen[rows[state[rows] == side]]).size for side in (True, False)]
-    return rows if min(counts) >= FEWEST_SPECIMENS else rows[:0]
+    return rows if fewest_gearboxes(state[rows], specimen[rows]) >= FEWEST_SPECIMENS else rows[:0]
 
 
 def held_out(

@@ -10,7 +10,6 @@ foreign. Source: derived.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -182,7 +181,8 @@ def predict_recording(
     if healthy:
         answer, nearness = _referenced_vote(model, pieces, healthy, pulses.speed_hz)
     else:
-        answer, nearness = _indicator_vote(model, pieces), plain
+        said = model.classifier.probability(pieces.columns(model.classifier.features))
+        answer, nearness = _vote(INDICATORS, said, model.classifier.temperature), plain
     network, notes = _network_vote(model, pieces, teeth)
     every = (answer, *network)
     votes = tuple(replace(vote, accuracy=model.accuracy.get(vote.classifier)) for vote in every)
@@ -254,34 +254,25 @@ def _reference(
 
 
 def _vote(name: str, probability: np.ndarray, temperature: float) -> Vote:
+    """Return the mean of what a classifier says of all pieces, (pieces, states)."""
     mean = tempered(probability.mean(axis=0, keepdims=True), temperature)[0]
     agreement = float(np.mean(probability.argmax(axis=1) == mean.argmax())) if len(probability) > 1 else None
     return Vote(name, mean, agreement)
 
 
-def _pipeline_vote(name: str, classifier: Any, values: np.ndarray) -> Vote:
-    return _vote(name, classifier.probability(values), classifier.temperature)
-
-
-def _indicator_vote(model: ReleasedModel, pieces: RecordPieces) -> Vote:
-    return _pipeline_vote(INDICATORS, model.classifier, pieces.columns(model.classifier.features))
-
-
 def _referenced_vote(
     model: ReleasedModel, pieces: RecordPieces, healthy: tuple[Reference, ...], speed_hz: float
 ) -> tuple[Vote, Nearness]:
-    assert model.referenced_classifier is not None
-    assert model.referenced_distance is not None
+    classifier, distance = model.referenced_classifier, model.referenced_distance
+    assert classifier is not None
+    assert distance is not None
 
     def minus_reference(names: tuple[str, ...]) -> np.ndarray:
         reference = log_mean(np.concatenate([found.columns(names) for _, _, found in healthy]))
         return np.asarray(log_values(pieces.columns(names)) - reference)
 
-    vote = _pipeline_vote(
-        REFERENCED, model.referenced_classifier, minus_reference(model.referenced_classifier.features)
-    )
-    logs = minus_reference(model.referenced_distance.features)
-    return vote, _nearness(model.referenced_distance, logs, speed_hz)
+    vote = _vote(REFERENCED, classifier.probability(minus_reference(classifier.features)), classifier.temperature)
+    return vote, _nearness(distance, minus_reference(distance.features), speed_hz)
 
 
 def _nearness(distance: TrainingDistance, logs: np.ndarray, speed_hz: float) -> Nearness:

@@ -131,8 +131,7 @@ def written_model(folder: Path, own: Sequence[OwnIndicator] | None) -> ReleasedM
     """
     content = read_content(folder)
     check_files(folder, content.files)
-    loadable, note = _loadable(folder, {NETWORK_FILE: NETWORK in content.accuracy})
-    network = _network(folder) if NETWORK_FILE in loadable else None
+    network, note = _network(folder, scored=NETWORK in content.accuracy)
     prefixes = ("", *([REFERENCED] if content.referenced else []))
     classifiers = {prefix: load_classifier(folder, prefix) for prefix in prefixes}
     _check_folder(folder, content.facts, classifiers, network)
@@ -229,17 +228,13 @@ def _foreign(folder: Path, file: str, beside: str, differences: str) -> UsageErr
     )
 
 
-def _loadable(folder: Path, scored: Mapping[str, bool]) -> tuple[tuple[str, ...], str]:
-    """Return the files of networks that can be read, and what is left out of those that the model gives scores of."""
-    present = tuple(name for name in scored if (folder / name).is_file())
-    lost = [name for name, wanted in scored.items() if wanted and name not in present]
-    note = f"network left out: {FACTS_FILE} gives its scores, but {', '.join(lost)} is missing; train again"
-    if present and (missing := missing_packages("torch", "safetensors")):
-        return (), f"network left out: {', '.join(missing)} not installed: {how_to_install('cnn')}"
-    return present, note if lost else ""
-
-
-def _network(folder: Path) -> TrainedNetwork:
+def _network(folder: Path, *, scored: bool) -> tuple[TrainedNetwork | None, str]:
+    """Return the network of a model, and what is to be noted where one that the model gives scores of is left out."""
+    if not (folder / NETWORK_FILE).is_file():
+        lost = f"network left out: {FACTS_FILE} gives its scores, but {NETWORK_FILE} is missing; train again"
+        return None, lost if scored else ""
+    if missing := missing_packages("torch", "safetensors"):
+        return None, f"network left out: {', '.join(missing)} not installed: {how_to_install('cnn')}"
     from diagnostics.training.cnn import load_network
 
-    return load_network(folder / NETWORK_FILE)
+    return load_network(folder / NETWORK_FILE), ""

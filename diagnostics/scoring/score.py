@@ -35,6 +35,7 @@ from diagnostics.scoring.truth import Truth
 from diagnostics.statistics.evaluation import (
     FEWEST_THAT_AGREE,
     RESAMPLES,
+    UNDEFINED,
     Interval,
     area_interval,
     bootstrap_weights,
@@ -102,7 +103,7 @@ class Scores:
         return score_figure(self.rows)
 
     def _entry(self, row: ScoreRow) -> dict[str, object]:
-        apart = row.difference or Interval(math.nan, math.nan, math.nan)
+        apart = row.difference or UNDEFINED
         return {
             "set": self.set_name, "identity": self.identity, "simulation_version": self.simulation_version,
             "split": self.split, "classes": self.classes,
@@ -152,7 +153,7 @@ class Scores:
         if not others:
             return f"{text}."
         best = max(others, key=lambda row: sign * row.score.value)
-        apart = best.difference or Interval(math.nan, math.nan, math.nan)
+        apart = best.difference or UNDEFINED
         beside = side(apart.low, apart.high)
         return f"{text}, and {beside} {TITLES.get(best.name, best.name)} ({best.score.value:.2f}), the best other."
 

@@ -10,6 +10,8 @@ import math
 
 import numpy as np
 
+HALF_WIDTH = 2
+"""Bins replaced on each side of a line."""
 FLOOR = 1e-9
 """Amplitudes below this share of the strongest line count as that much: the logarithm of an empty bin says nothing."""
 
@@ -53,11 +55,11 @@ def cepstrum_at(log_spectrum: np.ndarray, quefrency: np.ndarray) -> np.ndarray:
     return found
 
 
-def without_lines(log_spectrum: np.ndarray, spacing: int, half_width: int = 2) -> np.ndarray:
+def without_lines(log_spectrum: np.ndarray, spacing: int) -> np.ndarray:
     """Return the log spectrum with every line at multiples of `spacing` replaced by a straight line over it.
 
     Mesh lines would else collect at the pinion's quefrency too, a whole number of mesh periods. The two neighbours
-    beyond `half_width` bins (the Hann main lobe) carry the straight line.
+    beyond two bins (the Hann main lobe) carry the straight line.
 
     Parameters
     ----------
@@ -65,17 +67,15 @@ def without_lines(log_spectrum: np.ndarray, spacing: int, half_width: int = 2) -
         One-sided log amplitude.
     spacing : int
         Bins between the lines.
-    half_width : int
-        Bins replaced on each side of a line.
     """
     replaced = log_spectrum.copy()
-    first = np.arange(spacing - half_width, log_spectrum.size, spacing)
+    first = np.arange(spacing - HALF_WIDTH, log_spectrum.size, spacing)
     before = log_spectrum[first - 1]
-    behind = first + 2 * half_width + 1
+    behind = first + 2 * HALF_WIDTH + 1
     # beyond the last bin the line is level
     rise = np.where(behind < log_spectrum.size, log_spectrum[np.minimum(behind, log_spectrum.size - 1)] - before, 0.0)
-    for step in range(2 * half_width + 1):
+    for step in range(2 * HALF_WIDTH + 1):
         inside = first + step < log_spectrum.size
-        share = (step + 1.0) / (2 * half_width + 2.0)
+        share = (step + 1.0) / (2 * HALF_WIDTH + 2.0)
         replaced[first[inside] + step] = (before + share * rise)[inside]
     return replaced

@@ -8,7 +8,6 @@ kurtosis in bands after Antoni 2006; bands in shaft orders and the localised ene
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -27,10 +26,8 @@ def band_name(low: int, high: int) -> str:
     return f"o{low}_{high}"
 
 
-def band_signals(
-    part: np.ndarray, highest_order: float = math.inf, bands: Sequence[tuple[int, int]] = ORDER_BANDS
-) -> np.ndarray:
-    """Return the analytic signals of bands of whole shaft orders of one averaged revolution.
+def band_signals(part: np.ndarray, highest_order: float = math.inf) -> np.ndarray:
+    """Return the analytic signals of `ORDER_BANDS`, bands of whole shaft orders, of one averaged revolution.
 
     The real part is the part of the average in a band, the magnitude its envelope. Orders are whole bins of the
     revolution, so bands have sharp edges and nothing rings over the ends.
@@ -41,8 +38,6 @@ def band_signals(
         One revolution at equal angle steps: an average, its residual, or its difference to a healthy one.
     highest_order : float
         Highest order that the record carries (half its sampling rate over the shaft's speed); bands end there.
-    bands : sequence of (int, int)
-        Orders low ... high - 1 of each are kept.
 
     Returns
     -------
@@ -52,11 +47,11 @@ def band_signals(
     from scipy import fft
 
     lines, highest = 2.0 * fft.rfft(part), math.floor(min(highest_order, (part.size - 1) / 2.0)) + 1
-    kept = np.zeros((len(bands), part.size), dtype=np.complex128)
-    for row, (low, high) in zip(kept, bands, strict=True):
+    kept = np.zeros((len(ORDER_BANDS), part.size), dtype=np.complex128)
+    for row, (low, high) in zip(kept, ORDER_BANDS, strict=True):
         row[low : min(high, highest)] = lines[low : min(high, highest)]
     found = np.asarray(fft.ifft(kept, axis=1))
-    found[[min(high, highest) - low < FEWEST_SHARE * (high - low) for low, high in bands]] = np.nan
+    found[[min(high, highest) - low < FEWEST_SHARE * (high - low) for low, high in ORDER_BANDS]] = np.nan
     return found
 
 

@@ -8,10 +8,10 @@ Regular, residual and difference signal of a synchronous average, by zeroing of 
 residual = average minus shaft orders and ALL mesh harmonics (sidebands kept); difference = residual minus the first-
 order sidebands; regular = average minus difference. Orders are whole bins of one revolution, so nothing rings and
 nothing depends on speed, unlike notch filters in Hz. Source: Lebold et al. 2000 for the separation of residual and
-difference; all mesh harmonics below the band edge are removed unless `harmonics` says how many. MATLAB's `tsaresidual`,
-`tsadifference` and `tsaregular` separate alike (help page on filtered averages): the first shaft order always counts,
-and so do so many harmonics of it and of the mesh, two in their worked example; here that is `shaft_orders=2,
-harmonics=2`. With harmonics 3 to 5 strong, as in most measured gearboxes, two are too few.
+difference; all mesh harmonics below the band edge are removed. MATLAB's `tsaresidual`, `tsadifference` and `tsaregular`
+separate alike (help page on filtered averages): the first shaft order always counts, and so do so many harmonics of it
+and of the mesh, two in their worked example. With harmonics 3 to 5 strong, as in most measured gearboxes, two are too
+few.
 """
 
 from __future__ import annotations
@@ -42,7 +42,6 @@ def separated_average(
     teeth: int,
     shaft_orders: int = SHAFT_ORDERS,
     sidebands: int = SIDEBANDS,
-    harmonics: int | None = None,
     beside: int = 0,
 ) -> SeparatedAverage:
     """Separate one averaged revolution.
@@ -57,15 +56,12 @@ def separated_average(
         Shaft orders 0 ... `shaft_orders` count as regular.
     sidebands : int
         Sidebands on each side of every mesh harmonic that count as regular.
-    harmonics : int, optional
-        Mesh harmonics that count as regular; default all up to the band edge.
     beside : int
         Teeth of another gear on the shaft, whose mesh harmonics count as regular too; 0: there is none.
     """
     order = np.arange(average.size // 2 + 1)
     harmonic = np.round(order / teeth)
-    last = np.inf if harmonics is None else harmonics
-    distance = np.where((harmonic > 0) & (harmonic <= last), np.abs(order - harmonic * teeth), np.inf)
+    distance = np.where(harmonic > 0, np.abs(order - harmonic * teeth), np.inf)
     if beside:
         distance = np.minimum(distance, _distance(order, beside))
     return parted(average, order <= shaft_orders, distance, sidebands)

@@ -46,6 +46,9 @@ class Interval:
         return {name: float(number) if math.isfinite(number) else None for name, number in named.items()}
 
 
+UNDEFINED = Interval(math.nan, math.nan, math.nan)
+
+
 @dataclass(frozen=True, slots=True)
 class Predictions:
     """Class probabilities of records, with what they are judged by.
@@ -237,11 +240,15 @@ def macro_auroc(predictions: Predictions, weights: np.ndarray) -> np.ndarray:
             for k in range(len(predictions.classes))
         ]
     )
-    defined = np.isfinite(areas)
+    return mean_of_defined(areas)
+
+
+def mean_of_defined(values: np.ndarray, axis: int = 0) -> np.ndarray:
+    """Return the mean of the defined values along an axis; NaN where none is."""
+    defined = np.isfinite(values)
     with np.errstate(invalid="ignore"):
-        return np.asarray(
-            np.where(defined, areas, 0.0).sum(axis=0) / np.where(defined.any(axis=0), defined.sum(axis=0), np.nan)
-        )
+        total = np.where(defined, values, 0.0).sum(axis=axis)
+        return np.asarray(total / np.where(defined.any(axis=axis), defined.sum(axis=axis), np.nan))
 
 
 def confusion_matrix(predictions: Predictions) -> np.ndarray:
@@ -258,8 +265,7 @@ def balanced_accuracy(predictions: Predictions, weights: np.ndarray) -> np.ndarr
     mine = [predictions.truth == k for k in np.unique(predictions.truth)]
     with np.errstate(invalid="ignore"):  # a class without weight in a resample
         shares = np.stack([right[:, rows].sum(axis=1) / weights[:, rows].sum(axis=1) for rows in mine])
-    drawn = np.isfinite(shares)
-    return np.asarray(np.where(drawn, shares, 0.0).sum(axis=0) / drawn.sum(axis=0))
+    return mean_of_defined(shares)
 
 
 def area_interval(samples: np.ndarray, specimens: int) -> Interval:

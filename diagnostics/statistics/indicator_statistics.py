@@ -35,6 +35,7 @@ from diagnostics.statistics.detectable_size import detection_curves, size_at
 from diagnostics.statistics.evaluation import (
     LEVEL,
     RESAMPLES,
+    UNDEFINED,
     CentredRanks,
     Interval,
     bootstrap_weights,
@@ -42,8 +43,6 @@ from diagnostics.statistics.evaluation import (
     interval,
     weighted_auc,
 )
-
-UNDEFINED = Interval(math.nan, math.nan, math.nan)
 
 
 @dataclass(slots=True)

@@ -10,8 +10,8 @@ from diagnostics.page.blocks import Page
 from diagnostics.page.template import page_html
 from diagnostics.records.gear_train import PAIR
 from diagnostics.report.indicators import best_by_state, indicator_findings, undefined_html
-from diagnostics.statistics.evaluation import Interval
-from diagnostics.statistics.indicator_statistics import UNDEFINED, IndicatorResult, StateResult
+from diagnostics.statistics.evaluation import UNDEFINED, Interval
+from diagnostics.statistics.indicator_statistics import IndicatorResult, StateResult
 
 NAN = math.nan
 
