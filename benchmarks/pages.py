@@ -17,8 +17,8 @@ from benchmarks.row import Row, duration_text
 from benchmarks.shipped import QUICKSTART
 
 DURATION_S = 0.5
-RECORDS_PER_GEARBOX = 8
-GEARBOXES = (13, 125)
+RECORDS_PER_GEARBOX = 5
+GEARBOXES = (20, 200)
 LARGEST = 10_000
 WATCHED = """
 import json, resource, subprocess, sys

@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import siggen
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.judging.of_split import Training
 from diagnostics.page.blocks import RecordLinks
-from diagnostics.page.provenance import without_path
 from diagnostics.page.style import (
     PASSING,
     SLANTED,
@@ -125,8 +123,7 @@ def reported_gearboxes(dataset: Dataset) -> list[int]:
     """Return the gearboxes to which a report leads: those of its figures, then those of the test split."""
     table = dataset.labels(columns=["specimen_id", "split"]).to_pylist()
     tested = sorted({int(row["specimen_id"]) for row in table if row["split"] == TEST})
-    # the stiffness curves are of gearbox 0
-    return list(dict.fromkeys([int(_example_rows(dataset)[0]["specimen_id"]), 0, *tested]))
+    return list(dict.fromkeys([int(_example_rows(dataset)[0]["specimen_id"]), *tested]))
 
 
 DASHES = ("-", "--", "-.", ":")
@@ -143,27 +140,6 @@ DECADES_SHOWN = 5.0
 
 BEHIND_COLOUR, LOWEST = "#b9c4cd", 1e-12
 """Of the healthy record behind a damaged one, and where its area begins, below every figure."""
-
-
-def stiffness_figure(curves: Mapping[str, siggen.Curve], colours: dict[str, str]) -> Figure:
-    """Return mesh stiffness over the driver's angle, all states in one frame.
-
-    Parameters
-    ----------
-    curves : mapping of state to Curve
-    colours : dict of str
-        Colour by state.
-    """
-    figure, axes = new_figure(height_in=3.4)
-    axis = axes[0, 0]
-    for place, (state, curve) in enumerate(curves.items()):
-        style = {"color": colours.get(state), "linestyle": DASHES[place % len(DASHES)], "linewidth": 1.2}
-        axis.plot(np.degrees(curve.angle_rad), 1e-6 * curve.stiffness_n_per_m, label=state, **style)
-    axis.set_xlabel("Pinion angle [°]")
-    axis.set_ylabel("Mesh stiffness [N/µm]")
-    axis.margins(x=0.01)
-    figure.legend(loc="outside upper center", ncols=min(len(curves), 3), fontsize=9)
-    return figure
 
 
 def loss_of_specimens(dataset: Dataset) -> tuple[dict[str, np.ndarray], str]:
@@ -264,18 +240,6 @@ def _draw_damage(drawing: Drawing, dataset: Dataset, classes: tuple[str, ...], c
     caption = f"Largest relative loss of mesh stiffness against healthy, from the labels: {meaning}."
     drawing.damage["stiffness_loss"] = (figure, caption)
     drawing.behind["stiffness_loss"] = RecordLinks("Records", state_links(classes))
-    try:
-        # what siggen names is loaded when it is used: a set can be read without its physics
-        gearbox = siggen.draw(siggen.load_config(dataset.config))
-        curves = {state.name: siggen.mesh_stiffness(gearbox, state.name) for state in gearbox.states}
-        figure = stiffness_figure(curves, colours)
-    except Exception as error:
-        drawing.notes.append(f"No stiffness curves: {type(error).__name__}: {without_path(error, dataset)}")
-        return
-    caption = f"Specimen 0 in every state while the damaged teeth mesh: {next(iter(curves.values())).meaning}."
-    drawing.damage["stiffness"] = (figure, caption)
-    records = {"specimen 0": records_link(specimen_id=0)}
-    drawing.behind["stiffness"] = RecordLinks("Records", records)
 
 
 def _draw_scores(drawing: Drawing, training: Training) -> None:

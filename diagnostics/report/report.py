@@ -43,7 +43,7 @@ from diagnostics.report.indicators import Evaluated, evaluated, figures, own_ran
 from diagnostics.report.report_page import ANSWER, CAPTION, FIRST, Reported, report_page
 from diagnostics.report.sentences import summary
 from diagnostics.scoring.score import Scores, score
-from diagnostics.statistics.indicator_statistics import AssessmentSettings, Separability, separability
+from diagnostics.statistics.indicator_statistics import AssessmentSettings, Separability, by_strength
 from diagnostics.training.realism import is_error_free
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, how_to_install
@@ -126,10 +126,9 @@ def write_report(
     table = checked_table(records, dataset)
     second = other_table(other, stage, own) if other is not None else None
     matrix = feature_matrix(table, set_classes(dataset, network.classes))
-    with stage("separability", 1) as advance:
-        found = separability(matrix, seed)
-        advance()
     judged = _evaluated(records, dataset, seed, page, stage)
+    known = set(matrix.names)
+    found = by_strength(result.separability for result in judged.found if result.column in known)
     training, notes = _trained(dataset, table, folder / "models", seed, network, second, stage)
     with stage("detectors", 1) as advance:
         detectors = judged_detectors(with_kinds(matrix, dataset), training, seed)

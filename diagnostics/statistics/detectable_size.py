@@ -11,8 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
+
+from diagnostics.statistics.evaluation import sums_before
 
 GROUPS = 12
 RECORDS_PER_GROUP = 5
@@ -39,10 +42,10 @@ def weighted_quantile(values: np.ndarray, weights: np.ndarray, level: float) -> 
         Between 0 and 1.
     """
     order = np.argsort(values, kind="stable")
-    below = np.cumsum(weights[:, order], axis=1)
+    below = sums_before(weights.T[order])[1:]
     # a rounding error of the sum must not push the threshold to the next record
-    reached = below >= level * below[:, -1:] * (1.0 - 1e-12)
-    found: np.ndarray = values[order][reached.argmax(axis=1)]
+    reached = below >= level * below[-1] * (1.0 - 1e-12)
+    found: np.ndarray = values[order][reached.argmax(axis=0)]
     return found
 
 
@@ -74,22 +77,34 @@ def detection_curves(
     if not healthy.any():
         return [None] * len(sizes)
     threshold = weighted_quantile(values[healthy], weights[:, healthy], 1.0 - false_alarms)
-    alarms = weights * (values > threshold[:, None])
-    return [_curve(alarms, ~healthy & (size > 0.0), size, weights) for size in sizes]
+    damaged = np.flatnonzero(~healthy)
+    judged, drawn = values[damaged], weights[:, damaged]
+    return [_curve(judged, threshold, size[damaged], drawn) for size in sizes]
 
 
-def _curve(alarms: np.ndarray, chosen: np.ndarray, size: np.ndarray, weights: np.ndarray) -> DetectionCurve | None:
-    damaged = np.flatnonzero(chosen)
-    order = damaged[np.argsort(size[damaged], kind="stable")]
-    members = _groups(order, size[order])
+def _curve(values: np.ndarray, threshold: np.ndarray, size: np.ndarray, weights: np.ndarray) -> DetectionCurve | None:
+    """Return the curve of damaged records, (n,), whose thresholds are given, (b,)."""
+    medians, members = _members(size.astype(np.float64).tobytes())
     if len(members) < 2:
         return None
-    belongs = np.zeros((size.size, len(members)))
+    resamples = np.arange(threshold.size)
+    alarms, counts = np.empty((2, threshold.size, len(members)))
     for group, rows in enumerate(members):
-        belongs[rows, group] = 1.0
-    medians = np.array([float(np.median(size[rows])) for rows in members])
-    # sums of whole numbers: a product of matrices gives them without a rounding error
-    return DetectionCurve(medians, isotonic(alarms @ belongs, weights @ belongs))
+        order = rows[np.argsort(-values[rows], kind="stable")]
+        sums = sums_before(weights.T[order])
+        above = rows.size - np.searchsorted(values[order][::-1], threshold, side="right")
+        alarms[:, group], counts[:, group] = sums[above, resamples], sums[-1]
+    return DetectionCurve(medians, isotonic(alarms, counts))
+
+
+@lru_cache(maxsize=16)
+def _members(sizes: bytes) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Return the median size of each group, and its rows, of (n,) float64 as bytes; most columns have the same."""
+    size = np.frombuffer(sizes)
+    positive = np.flatnonzero(size > 0.0)
+    order = positive[np.argsort(size[positive], kind="stable")]
+    members = _groups(order, size[order])
+    return np.array([float(np.median(size[rows])) for rows in members]), members
 
 
 def _groups(order: np.ndarray, size: np.ndarray) -> list[np.ndarray]:
@@ -117,7 +132,7 @@ def isotonic(sums: np.ndarray, counts: np.ndarray) -> np.ndarray:
     sums, counts : (b, g) float64
         Sum and weight of each group; a group without weight takes the value of the one below.
     """
-    total, weight = _sums_from_start(sums), _sums_from_start(counts)
+    total, weight = sums_before(sums.T), sums_before(counts.T)
     fit = np.empty_like(sums)
     highest = np.full(sums.T.shape, -np.inf)
     # mean of groups j ... k: the largest over j <= i, of which the least over k >= i is the fit of group i
@@ -128,13 +143,6 @@ def isotonic(sums: np.ndarray, counts: np.ndarray) -> np.ndarray:
         np.maximum(highest[i:], mean, out=highest[i:])
         fit[:, i] = np.where(np.isneginf(highest[i:]), np.inf, highest[i:]).min(axis=0)
     return fit
-
-
-def _sums_from_start(values: np.ndarray) -> np.ndarray:
-    """Return the sums of the groups before each, (g + 1, b): resamples stand together in memory."""
-    found = np.zeros((values.shape[1] + 1, values.shape[0]))
-    np.cumsum(values.T, axis=0, out=found[1:])
-    return found
 
 
 def size_at(curve: DetectionCurve, share: float) -> np.ndarray:

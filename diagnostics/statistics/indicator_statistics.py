@@ -18,7 +18,7 @@ specimens, and so is the place in the ranking: the best of many is optimistic, w
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
@@ -111,6 +111,14 @@ class IndicatorResult:
     sensitivity: dict[str, float] = field(default_factory=dict)
     detectable: dict[str, Interval] = field(default_factory=dict)
     smallest_size: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def separability(self) -> Separability:
+        """How it tells each state between specimens."""
+        areas = {state: found.separation for state, found in self.others.items()}
+        return Separability(
+            self.column, areas, self.spearman_area, self.defined_share, self.direction, gears=self.gears
+        )
 
     def row(self) -> dict[str, Any]:
         """Return everything as one flat row of a table."""
@@ -473,6 +481,11 @@ def separability(matrix: FeatureMatrix, seed: int, resamples: int = FEWER_RESAMP
         replace(separability_of(records, name, values, records.centred_values(values)), gears=matrix.gears)
         for name, values in columns
     ]
+    return by_strength(found)
+
+
+def by_strength(found: Iterable[Separability]) -> list[Separability]:
+    """Return indicators, the strongest first."""
     return sorted(found, key=lambda entry: (-entry.strength, entry.feature))
 
 

@@ -200,12 +200,6 @@ def test_the_same_input_gives_the_same_page(make_dataset: Callable[..., Any], tm
     assert pages[0] == pages[1]
 
 
-def test_stiffness_that_cannot_be_computed_becomes_a_note(folder: Path) -> None:
-    notes = json.loads((folder / "metrics.json").read_text())["notes"]
-    assert any(note.startswith("No stiffness curves") for note in notes)
-    assert any("--no-cnn" in note for note in notes)
-
-
 @pytest.mark.slow  # trains everything once more, a network too
 def test_seven_revolutions_and_no_validation_specimens_still_train_every_classifier(
     make_dataset: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
