@@ -6,7 +6,9 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
-from typing import Any
+from io import BytesIO
+from shutil import copyfileobj
+from typing import IO, Any
 
 from siggen.dataset.object_path import ObjectPath
 from siggen.errors import DatasetError, UsageError
@@ -14,6 +16,8 @@ from siggen.file_writing import LEFTOVER_SUFFIX
 
 ATTEMPTS = 6
 CONNECT_S, REQUEST_S = 10.0, 60.0
+PART_BYTES = 16 << 20
+"""Of a file, at a time."""
 HINTS = {
     "NO_SUCH_BUCKET": "there is no such bucket; make it first, siggen makes none",
     "ACCESS_DENIED": "these credentials may not",
@@ -43,10 +47,10 @@ class ObjectStore:
         """The place as the user wrote it."""
         return str(self.path)
 
-    def put(self, name: str, content: bytes) -> None:
-        """Store an object."""
+    def put(self, name: str, content: bytes | IO[bytes]) -> None:
+        """Store an object, or what is left of an open file."""
         with self._in_words(name, "written"), _file_system().open_output_stream(self._place(name)) as stream:
-            stream.write(content)
+            copyfileobj(BytesIO(content) if isinstance(content, bytes) else content, stream, PART_BYTES)
 
     def get(self, name: str, size: int | None = None) -> bytes:
         """Return the whole object.

@@ -10,7 +10,8 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Any
+from tempfile import TemporaryFile
+from typing import IO, Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -46,11 +47,11 @@ def packed(table: pa.Table, about: Mapping[str, Any] | None = None) -> bytes:
 
 
 class PackedTable:
-    """A table that grows batch by batch, and is Parquet in the end; its bytes do not depend on how batches cut it."""
+    """A table that grows batch by batch in a file without a name; its bytes do not depend on how batches cut it."""
 
     def __init__(self, schema: pa.Schema) -> None:
-        self._sink = pa.BufferOutputStream()
-        self._writer = pq.ParquetWriter(self._sink, schema, **parquet_options(schema))
+        self._file: IO[bytes] = TemporaryFile()  # noqa: SIM115 - closed by `close`
+        self._writer = pq.ParquetWriter(self._file, schema, **parquet_options(schema))
         self._pending = schema.empty_table()
 
     def add(self, batch: pa.RecordBatch) -> None:
@@ -61,11 +62,22 @@ class PackedTable:
             self._write(self._pending.slice(0, GROUP_ROWS))
             self._pending = self._pending.slice(GROUP_ROWS)
 
-    def finish(self) -> bytes:
-        """Return the file."""
+    def finish(self) -> tuple[IO[bytes], PromisedFile]:
+        """Return the file from its beginning, and what is promised of it."""
         self._write(self._pending)
         self._writer.close()
-        return bytes(self._sink.getvalue().to_pybytes())
+        size = self._file.tell()
+        self._file.seek(0)
+        digest = hashlib.file_digest(self._file, "sha256").hexdigest()  # type: ignore[arg-type]
+        self._file.seek(0)
+        return self._file, PromisedFile(bytes=size, sha256=digest)
+
+    def close(self) -> None:
+        """Give the file back."""
+        try:
+            self._writer.close()
+        finally:
+            self._file.close()
 
     def _write(self, rows: pa.Table) -> None:
         # one contiguous piece: page borders would otherwise follow the borders of the batches

@@ -6,8 +6,10 @@ import os
 import stat
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
+from io import BytesIO
 from pathlib import Path, PurePath
-from typing import Protocol
+from shutil import copyfileobj
+from typing import IO, Protocol
 
 from siggen.dataset.object_name import check_below
 from siggen.errors import DatasetError
@@ -31,8 +33,8 @@ class Storage(Protocol):
     def location(self) -> str:
         """Where the objects are, as a user writes it."""
 
-    def put(self, name: str, content: bytes) -> None:
-        """Store an object, replacing an older one in a single step."""
+    def put(self, name: str, content: bytes | IO[bytes]) -> None:
+        """Store an object, or what is left of an open file, replacing an older one in a single step."""
 
     def get(self, name: str, size: int | None = None) -> bytes:
         """Return the whole object; one of another than the promised size is refused before it is read."""
@@ -70,7 +72,7 @@ class LocalFolder:
     def __reduce__(self) -> tuple[type[LocalFolder], tuple[Path]]:
         return LocalFolder, (self.path.absolute(),)  # whoever reads it may work in another folder
 
-    def put(self, name: str, content: bytes) -> None:
+    def put(self, name: str, content: bytes | IO[bytes]) -> None:
         """Write the content to a hidden file, then rename it: a reader never sees half of it."""
         target = self._file(name)
         self._check_links(target.parent)
@@ -81,8 +83,8 @@ class LocalFolder:
             is_taken = True
         if is_taken:
             raise DatasetError(f"{target}: a folder stands where a file belongs, or a file in its way; remove it")
-        with drafted(target) as draft:
-            draft.write_bytes(content)
+        with drafted(target) as draft, draft.open("wb") as file:
+            copyfileobj(BytesIO(content) if isinstance(content, bytes) else content, file)
 
     def get(self, name: str, size: int | None = None) -> bytes:
         """Return the file's content.

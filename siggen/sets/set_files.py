@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from tempfile import TemporaryFile
 from typing import IO, Any
@@ -19,44 +19,52 @@ from siggen.dataset.shard import PackedTable, promised
 from siggen.dataset.storage import Storage
 from siggen.gearbox.design import SetDesign
 from siggen.gearbox.plan import ShardPlan
-from siggen.sets.shard_making import MadeShard, streamed, table_schemas
+from siggen.sets.shard_making import MadeShard, streamed
 
 
 @dataclass(slots=True)
 class MadeShards:
-    """What came of shards, by name; their rows of small tables wait in a file without a name."""
+    """What came of shards, by name; small tables grow in the order of the shards while workers make others.
 
+    Rows of shards whose turn has not come wait in a file without a name, so that memory does not grow with the set.
+    """
+
+    order: Sequence[str]
     by_name: dict[str, MadeShard] = field(default_factory=dict)
+    tables: dict[str, PackedTable] = field(default_factory=dict)
     _places: dict[str, int] = field(default_factory=dict)
-    _spool: IO[bytes] = field(default_factory=TemporaryFile)
+    _waiting: IO[bytes] = field(default_factory=TemporaryFile)
+    _next: int = 0
 
     def add(self, made: MadeShard) -> None:
         """Keep what came of a shard."""
-        self._places[made.shard] = self._spool.seek(0, 2)
-        pickle.dump(dict(made.tables), self._spool)
         self.by_name[made.shard] = replace(made, tables={})
+        if not self.tables:
+            return
+        self._places[made.shard] = self._waiting.seek(0, 2)
+        pickle.dump(dict(made.tables), self._waiting)
+        while self._next < len(self.order) and self.order[self._next] in self._places:
+            self._waiting.seek(self._places.pop(self.order[self._next]))
+            for name, content in pickle.load(self._waiting).items():
+                for batch in streamed(content):
+                    self.tables[name].add(batch)
+            self._next += 1
+        if not self._places:
+            self._waiting.truncate(0)
 
     def close(self) -> None:
-        """Give the file back."""
-        self._spool.close()
+        """Give the files back."""
+        self._waiting.close()
+        for table in self.tables.values():
+            table.close()
 
-    def tables(self, shard: str) -> Mapping[str, bytes]:
-        """Return the rows of small tables of a shard."""
-        self._spool.seek(self._places[shard])
-        found: Mapping[str, bytes] = pickle.load(self._spool)
-        return found
-
-
-def put_tables(
-    storage: Storage, columns: SetColumns, shards: Iterable[str], made: MadeShards
-) -> dict[str, PromisedFile]:
-    """Write labels, damage and lives of all shards in their order; return what is promised of them."""
-    tables = {name: PackedTable(schema) for name, schema in table_schemas(columns).items()}
-    for shard in shards:
-        for name, content in made.tables(shard).items():
-            for batch in streamed(content):
-                tables[name].add(batch)
-    return {name: put(storage, name, table.finish()) for name, table in tables.items()}
+    def put_tables(self, storage: Storage) -> dict[str, PromisedFile]:
+        """Write labels, damage and lives of all shards; return what is promised of them."""
+        promises = {}
+        for name, table in self.tables.items():
+            file, promises[name] = table.finish()
+            storage.put(name, file)
+        return promises
 
 
 def put(storage: Storage, name: str, content: bytes) -> PromisedFile:
@@ -79,7 +87,7 @@ def put_last(
     splits = {split: _split(of_split, made) for split, of_split in _by_split(planned) if of_split}
     failures = [failure for shard in shards for failure in shard.failures]
     files = {name: file for shard in shards for name, file in shard.files.items()}
-    files |= put_tables(storage, columns, (shard.key for shard in planned), made)
+    files |= made.put_tables(storage)
     files[CARD] = put(storage, CARD, card(design, splits, failures, environment, columns).encode())
     files[CONFIG] = put(storage, CONFIG, design.text.encode())
     rows = {shard.shard: shard.rows for shard in shards}

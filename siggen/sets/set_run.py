@@ -13,6 +13,7 @@ from siggen.dataset.environment import environment
 from siggen.dataset.inventory import Inventory
 from siggen.dataset.manifest import CONFIG
 from siggen.dataset.object_name import DATA_FOLDER, data_name
+from siggen.dataset.shard import PackedTable
 from siggen.dataset.simulated_rows import RowSimulation
 from siggen.dataset.storage import Storage
 from siggen.errors import EXIT_INTERRUPTED, DatasetError, SiggenError, UsageError, counted
@@ -24,7 +25,7 @@ from siggen.sets.interruption import Interruption
 from siggen.sets.loss_limit import LossLimit
 from siggen.sets.run_journal import Events, RunJournal
 from siggen.sets.set_files import MadeShards, put_last
-from siggen.sets.shard_making import MadeShard, ShardMaker
+from siggen.sets.shard_making import MadeShard, ShardMaker, table_schemas
 from siggen.workers.tasks import Workers, results
 
 Progress = Callable[[int, int], None]
@@ -110,7 +111,7 @@ class SetRun:
         if not 1 <= number <= of:
             raise UsageError(f"part: received {number} of {of}; allowed: i of N with i from 1 to N, such as (3, 16)")
         self._wanted = self.planned[number - 1 :: of]
-        self.made = MadeShards()
+        self.made = MadeShards([shard.key for shard in self._wanted])
 
     def run(self) -> Generation:
         """Make what is missing.
@@ -132,6 +133,9 @@ class SetRun:
             with self.journal.driver.during("planning"):
                 physics = contents.physics()
                 maker = self._maker(physics, physics.simulation(design))
+            if self.part is None:
+                schemas = table_schemas(maker.simulation.columns)
+                self.made.tables = {name: PackedTable(schema) for name, schema in schemas.items()}
             self._compile(physics)
             self._make(maker, records)
             if self.part is None:

@@ -10,11 +10,13 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator, Mapping
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing import get_context, parent_process
 from multiprocessing.context import BaseContext
+from typing import Any
 
 from siggen.child_environment import OF_WORKERS, child_environment
 from siggen.workers.orphan import end_with
@@ -39,6 +41,19 @@ class WorkerPool(ProcessPoolExecutor):
         context = _context()
         variables = {**os.environ, **OF_WORKERS}
         super().__init__(workers, mp_context=context, initializer=_settle_down, initargs=(variables, os.getpid()))
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> Future[Any]:
+        """Hand a task over.
+
+        Raises
+        ------
+        BrokenProcessPool
+            Also if the fork server died, which copies itself for a new worker.
+        """
+        try:
+            return super().submit(function, *arguments, **named)
+        except (EOFError, OSError) as error:
+            raise BrokenProcessPool(f"a worker could not be started: {error}") from error
 
     def __exit__(self, *_: object) -> None:
         """End the workers, whatever they do: what is not finished is made again."""

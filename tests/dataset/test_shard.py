@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from siggen.columns.record import record_batch, record_schema, signal_matrix
 from siggen.dataset import shard
-from siggen.dataset.shard import PackedTable, about_of, packed, unpacked
+from siggen.dataset.shard import PackedTable, about_of, packed, promised, unpacked
 from siggen.errors import VerificationError
 from siggen.sets.drawn import set_columns
 from tests.dataset.fake_set import fake_config, simulate
@@ -67,7 +67,10 @@ def test_bytes_do_not_depend_on_how_rows_arrive(cuts: list[int]) -> None:
             for part in parts:
                 for batch in part.to_batches():
                     table.add(batch)
-            grown.append(table.finish())
+            file, promise = table.finish()
+            grown.append(file.read())
+            assert promise == promised(grown[-1])
+            table.close()
     assert grown[0] == grown[1]
     assert unpacked(grown[0]).equals(ROWS)
 

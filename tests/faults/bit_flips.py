@@ -15,17 +15,16 @@ from siggen.errors import SiggenError
 from tests.faults.victims import small_model, small_set
 
 FLIPS_PER_KIND, QUICK_FLIPS = 40, 10
-REFUSED, SILENT = "refused in words", "read as data"
+REFUSED, UNNAMED, SILENT = "refused in words, by its name", "refused without its name", "read as data"
 
 SET_FILES: dict[str, tuple[tuple[str, ...], Callable[[Dataset], object]]] = {
     "signals": (("data/*.parquet",), lambda dataset: list(dataset.records())),
     "internal quantities": (("internals/*.parquet",), lambda dataset: list(dataset.internals())),
     "labels": (("labels.parquet",), lambda dataset: dataset.labels()),
     "damage": (("damage.parquet",), lambda dataset: dataset.damage()),
-    "manifest, configuration": (
-        ("manifest.json", "config.yaml"),
-        lambda dataset: list(dataset.records()),
-    ),
+    "manifest": (("manifest.json",), lambda dataset: list(dataset.records())),
+    "configuration": (("config.yaml",), lambda dataset: list(dataset.records())),
+    "card": (("README.md",), lambda dataset: dataset.card()),
 }
 """Which files of a set are flipped, and how they are read."""
 
@@ -73,16 +72,16 @@ def _outcomes(files: list[Path], read: Callable[[], object], count: int, seed: i
         broken[chance.randrange(len(whole))] ^= 1 << chance.randrange(8)
         file.write_bytes(broken)
         try:
-            yield _outcome(read)
+            yield _outcome(read, file.name)
         finally:
             file.write_bytes(whole)
 
 
-def _outcome(read: Callable[[], object]) -> str:
+def _outcome(read: Callable[[], object], name: str) -> str:
     try:
         read()
-    except SiggenError:
-        return REFUSED
+    except SiggenError as error:
+        return REFUSED if name in str(error) else UNNAMED
     except Exception as error:
         return f"a raw {type(error).__name__}"
     return SILENT
