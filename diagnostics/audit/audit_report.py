@@ -5,11 +5,9 @@ The content of `audit.json`: everything that the audit found, in numbers.
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -52,13 +50,14 @@ from diagnostics.records.recording import names_of
 from siggen.dataset.reading import Dataset
 from siggen.errors import how_to_install
 from siggen.file_writing import write_file
+from siggen.plain_json import json_text
 
 SEEN_ALONE, BESIDE = "alone", "beside a healthy record"
 """What attackers see of a record."""
 
 
 def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
-    """Return the content of `audit.json`; undefined numbers are null."""
+    """Return the content of `audit.json`, where undefined numbers are null."""
     return {
         "set": dataset.path.name,
         "identity": dataset.manifest["identity"],
@@ -70,24 +69,22 @@ def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
         "too_few_gearboxes": audit.tells_too_little,
         "gearboxes_needed": audit.gearboxes_needed,
         "summary": audit_summary(audit),
-        "findings": [asdict(finding) for finding in audit.findings],
+        "findings": audit.findings,
         "realism": _realism_numbers(audit.realism) if audit.realism else None,
-        "reference": asdict(audit.reference) | {"discriminator_auc": finite(audit.reference.discriminator_auc)}
-        if audit.reference
-        else None,
+        "reference": audit.reference,
         "detectability": {name: _entries_numbers(entries, audit) for name, entries in audit.detections.items()},
         "strongest": {
             name: _entries_numbers(audit.ladder(referenced=side), audit)
             for name, side in ((ALONE, False), (WITH_REFERENCE, True))
         },
         "shams": [one.numbers() for one in audit.shams],
-        "chance": _chance_numbers(audit.chance) if audit.chance else None,
+        "chance": audit.chance,
         "best_single_indicator": {
             state: {
                 "indicator": found.column,
                 "tried": found.tried,
-                "auc_chosen_on_the_same_gearboxes": found.auc.numbers(),
-                "auc_chosen_on_other_gearboxes": finite(found.held_out),
+                "auc_chosen_on_the_same_gearboxes": found.auc,
+                "auc_chosen_on_other_gearboxes": found.held_out,
             }
             for state, found in audit.best.items()
         },
@@ -105,27 +102,19 @@ def _entries_numbers(entries: list[Detectability], audit: Audit) -> dict[str, An
                 "specimens": entry.specimens,
                 "chosen": entry.basis,
                 "tried": entry.tried,
-                **{size: finite(value) for size, value in entry.sizes.items()},
-                "auc": entry.auc.numbers(),
+                **entry.sizes,
+                "auc": entry.auc,
             }
             for entry in entries
         ],
         "profile_length_mm_at_auc": {
             str(target): {
-                fault: asdict(reached) if reached and not audit.gearboxes_needed else None
+                fault: None if audit.gearboxes_needed else reached
                 for fault, reached in length_at(entries, target).items()
             }
             for target in TARGETS
         },
     }
-
-
-def _chance_numbers(chance: ChanceLimit) -> dict[str, Any]:
-    states = {
-        state: asdict(law) | {"auc": finite(law.auc), "p_value": finite(law.p_value)}
-        for state, law in chance.states.items()
-    }
-    return asdict(chance) | {"auc": finite(chance.auc), "states": states}
 
 
 def _realism_numbers(found: Realism) -> dict[str, Any]:
@@ -135,12 +124,10 @@ def _realism_numbers(found: Realism) -> dict[str, Any]:
         "share_inside_all": found.all_inside,
         "quantities": _share_numbers(found.shares),
         "background": {
-            "mean_share_inside": finite(found.background_inside),
+            "mean_share_inside": found.background_inside,
             "quantities": _share_numbers(found.background),
         },
-        "sensor_spread": [
-            {"name": s.name, "spread_db": finite(s.spread_db), "wanted_db": s.wanted_db} for s in found.spreads
-        ],
+        "sensor_spread": found.spreads,
     }
 
 
@@ -149,7 +136,7 @@ def _share_numbers(shares: tuple[QuantityShare, ...]) -> list[dict[str, Any]]:
         {
             "name": share.quantity.name,
             "ranges": share.quantity.ranges,
-            **{name: finite(value) for name, value in zip(("q05", "q50", "q95"), share.quantiles, strict=True)},
+            **dict(zip(("q05", "q50", "q95"), share.quantiles, strict=True)),
             "inside": share.inside,
             "undefined": share.undefined,
         }
@@ -284,13 +271,7 @@ def write_audit(audit: Audit, dataset: Dataset, folder: Path) -> Path:
             drawn["detectability"] = png_bytes(detectability_figure(shown_ladders(audit)))
     for name, png in drawn.items():
         write_file(folder / "figures" / f"{name}.png", png)
-    text = json.dumps(audit_numbers(audit, dataset), indent=1, allow_nan=False)
-    write_file(folder / "audit.json", text + "\n")
+    write_file(folder / "audit.json", json_text(audit_numbers(audit, dataset)))
     path = folder / "audit.html"
     write_page(path, audit_page(audit, dataset, drawn))
     return path
-
-
-def finite(value: float) -> float | None:
-    """Return the value, or None where it is undefined or infinite."""
-    return float(value) if math.isfinite(value) else None

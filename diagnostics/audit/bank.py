@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -338,8 +338,8 @@ class ShamFound:
             "state": self.state,
             "side": self.side,
             "attacker": self.attacker,
-            "auc": self.auc.numbers(),
-            "chance": asdict(self.chance) if self.chance else None,
+            "auc": self.auc,
+            "chance": self.chance,
             "told": self.told,
             "auc_by_attacker": self.reached,
         }

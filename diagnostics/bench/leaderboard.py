@@ -7,7 +7,6 @@ so the mean over parts is taken resample by resample.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -43,6 +42,7 @@ from diagnostics.scoring.score_rows import ScoreRow, score_figure
 from diagnostics.statistics.evaluation import RESAMPLES, Interval, area_interval, bootstrap_weights, interval
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
+from siggen.plain_json import json_text
 
 BOARD, NUMBERS = "leaderboard.html", "leaderboard.json"
 MEAN = "mean"
@@ -186,7 +186,7 @@ def write_board(benchmark: Benchmark, entries: Sequence[BoardEntry], folder: Pat
     tables = {referenced: _ordered(entries, benchmark.parts, referenced) for referenced in ranking.tracks}
     numbers = [row for ordered in tables.values() for row in _numbers(ordered, benchmark)]
     facts = {"digest": benchmark.digest, "simulation_version": benchmark.simulation_version, "entries": numbers}
-    write_file(folder / NUMBERS, json.dumps(facts, indent=1, allow_nan=False) + "\n")
+    write_file(folder / NUMBERS, json_text(facts))
     title = f"Leaderboard of {benchmark.title}, {benchmark.tier}"
     parts: list[Block] = [Heading(title, 1), *summary_blocks(_sentences(benchmark, tables))]
     for referenced, ordered in tables.items():
@@ -300,10 +300,10 @@ def _numbers(ordered: Sequence[BoardEntry], benchmark: Benchmark) -> list[dict[s
         {
             "name": entry.name,
             "beside_a_healthy_record": entry.referenced,
-            entry.ranking.key: {part: entry.score(part).numbers() for part in _parts(entry, benchmark)},
-            "sham": {part: area_interval(one, entry.gearboxes[part]).numbers() for part, one in entry.leak.items()},
+            entry.ranking.key: {part: entry.score(part) for part in _parts(entry, benchmark)},
+            "sham": {part: area_interval(one, entry.gearboxes[part]) for part, one in entry.leak.items()},
             "minus_first": {
-                part: paired(ordered[0], entry, part).numbers()
+                part: paired(ordered[0], entry, part)
                 for part in _parts(entry, benchmark)
                 if part in _parts(ordered[0], benchmark)
             },

@@ -47,6 +47,7 @@ from siggen.dataset.reading import open as open_set
 from siggen.errors import DatasetError, UsageError
 from siggen.file_writing import write_file
 from siggen.keys.column import Role
+from siggen.plain_json import json_text
 
 UNKNOWN = "unknown"
 TEXTS = ("state", "fault", "severity")
@@ -222,7 +223,7 @@ def commit_benchmark(folder: str | Path, labels: str | Path | None = None) -> st
     benchmark = open_benchmark(folder)
     found = labels_of(benchmark, Path(labels) if labels else None).commitment
     content = {"sha256": found, "digest": benchmark.digest, "of": REVEALED}
-    write_file(benchmark.path / COMMITMENT, json.dumps(content, indent=1) + "\n")
+    write_file(benchmark.path / COMMITMENT, json_text(content))
     return found
 
 
@@ -359,7 +360,7 @@ def write_benchmark(
     write_file(hidden / SEALED, json.dumps(sealed, sort_keys=True, allow_nan=False) + "\n")
     own = (out / LEARN / CARD).read_text(encoding="utf-8")
     write_file(out / CARD, benchmark_card(told, learn, own, question.words))
-    write_file(out / FACTS, json.dumps(told, indent=1) + "\n")
+    write_file(out / FACTS, json_text(told))
     return open_benchmark(out)
 
 

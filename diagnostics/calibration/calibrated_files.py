@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import csv
-import json
 import shutil
 from collections.abc import Iterable, Sequence
+from dataclasses import astuple
 from io import BytesIO, StringIO
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,7 @@ from diagnostics.calibration.path_draws import PathDraw
 from diagnostics.calibration.source_library import sampled_as
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
+from siggen.plain_json import json_text
 
 FACTS = "calibration.json"
 DEPTHS = "driver_depth", "driven_depth"
@@ -67,8 +68,7 @@ def write_calibration(found: Calibration, out: Path) -> Path:
                 _write_table(folder / f"lines_{name}.csv", ("order", "frequency_hz", "amplitude_m_s2"), rows)
             for number in range(len(channel.paths)):
                 _write_path(folder / _path_file(name, number), found, axis, channel.paths[number])
-        facts = json.dumps(calibration_facts(found), indent=1, allow_nan=False)
-        write_file(folder / FACTS, facts + "\n")
+        write_file(folder / FACTS, json_text(calibration_facts(found)))
         write_file(out, calibrated_text(found, out))
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)  # the same command may come again
@@ -164,15 +164,15 @@ def calibration_facts(found: Calibration) -> dict[str, Any]:
         "channels": {
             channel.name: {
                 "line_level_db": {
-                    name: _fact(level)
+                    name: astuple(level)
                     for name, level in zip(groups, channel.levels, strict=True)
                     if np.isfinite(level.value)
                 },
-                "noise_level_db": _fact(channel.noise.level_db),
-                **dict(zip(DEPTHS, map(_fact, channel.noise.depths), strict=True)),
-                "level_std": _fact(channel.noise.level_std),
+                "noise_level_db": astuple(channel.noise.level_db),
+                **dict(zip(DEPTHS, map(astuple, channel.noise.depths), strict=True)),
+                "level_std": astuple(channel.noise.level_std),
                 "lines_beside_the_mesh": len(channel.own),
-                "second_stage_level_db": {one.name: _fact(one.level_db) for one in channel.stage},
+                "second_stage_level_db": {one.name: astuple(one.level_db) for one in channel.stage},
                 "step_m_s2": channel.sensor.step_m_s2,
             }
             for channel in found.channels
@@ -233,10 +233,6 @@ ALWAYS_OPEN = (
     "range of the sensor: four times the largest value",
     "other gearboxes of this type: one assembly was measured",
 )
-
-
-def _fact(value: Fitted) -> list[float | None]:
-    return [float(x) if np.isfinite(x) else None for x in (value.value, value.low, value.high)]
 
 
 def _interval(value: Fitted) -> str:

@@ -9,7 +9,7 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from diagnostics.indicators.table import revolution_columns
-from diagnostics.prediction.training_distance import TrainingDistance, distance_facts, distance_from_facts
+from diagnostics.prediction.training_distance import TrainingDistance, distance_from_facts
 from diagnostics.records.gear_train import GearNames, MeshNames
 from diagnostics.records.record_classes import check_kind
 from diagnostics.records.recording import names_of, pair_teeth
@@ -28,6 +28,7 @@ from siggen.dataset.reading import Dataset
 from siggen.dataset.seal import digest_of, sealed, unsealed
 from siggen.errors import UsageError, VerificationError
 from siggen.file_writing import write_file
+from siggen.plain_json import plain
 
 REFERENCED = "referenced_"
 """Prefix of the files of the healthy-referenced variant."""
@@ -171,13 +172,13 @@ def write_facts(
     """Write `model.json` with the hashes of all files beside it, so it comes last."""
     content = {
         "format": FORMAT,
-        "facts": asdict(facts),
+        "facts": facts,
         "scores": scores,
-        "distance": distance_facts(distance),
-        "referenced_distance": distance_facts(referenced) if referenced else None,
+        "distance": distance,
+        "referenced_distance": referenced,
         "files": file_hashes(folder),
     }
-    write_file(folder / FACTS_FILE, sealed(content))
+    write_file(folder / FACTS_FILE, sealed(plain(content)))
 
 
 @dataclass(frozen=True, slots=True)

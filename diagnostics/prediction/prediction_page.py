@@ -9,7 +9,6 @@ A prediction as JSON and as lines for the terminal.
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -41,6 +40,7 @@ from diagnostics.records.gear_train import GearMesh, first_teeth, meshes_of
 from diagnostics.records.record_classes import STATE
 from diagnostics.signal.spectrum import OrderSpectrum, order_spectrum
 from siggen.file_writing import write_file
+from siggen.plain_json import json_text, plain
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -67,7 +67,7 @@ INDICATORS_SHOWN = 400
 
 def prediction_facts(found: Prediction, facts: ModelFacts) -> dict[str, Any]:
     """Return everything about a prediction as JSON can hold it; undefined numbers are null."""
-    middle = np.array([_median(column) for column in found.pieces.values.T])
+    middle = [_median(column) for column in found.pieces.values.T]
     return {
         "file": str(found.recording.path),
         found.class_kind: found.state,
@@ -78,7 +78,7 @@ def prediction_facts(found: Prediction, facts: ModelFacts) -> dict[str, Any]:
             vote.classifier: {
                 **dict(zip(found.classes, vote.probability.tolist(), strict=True)),
                 "share_of_pieces_that_agree": vote.agreement,
-                "test_accuracy": vote.accuracy.numbers() if vote.accuracy else None,
+                "test_accuracy": vote.accuracy,
             }
             for vote in found.votes
         },
@@ -99,10 +99,7 @@ def prediction_facts(found: Prediction, facts: ModelFacts) -> dict[str, Any]:
             "identity": facts.identity,
             "manifest_digest": facts.manifest_digest,
         },
-        "indicators": {
-            name: value if math.isfinite(value) else None
-            for name, value in zip(found.pieces.names, middle.tolist(), strict=True)
-        },
+        "indicators": dict(zip(found.pieces.names, middle, strict=True)),
     }
 
 
@@ -260,8 +257,7 @@ def write_prediction(found: Prediction, facts: ModelFacts, folder: Path) -> Path
     """
     require_packages("the plots of a prediction", "matplotlib")
     content = prediction_facts(found, facts)
-    text = json.dumps(content, indent=1, allow_nan=False) + "\n"
-    write_file(folder / "prediction.json", text)
+    write_file(folder / "prediction.json", json_text(content))
     blocks: list[Block] = []
     for channel in found.recording.channels:
         with styled():
@@ -269,7 +265,7 @@ def write_prediction(found: Prediction, facts: ModelFacts, folder: Path) -> Path
         write_file(folder / f"sidebands_{channel}.png", png)
         blocks.append(FigureBlock(png, f"Order spectrum (Hann) around mesh harmonics: {channel}."))
     page = folder / "prediction.html"
-    write_page(page, _page(found, facts, content["indicators"], blocks))
+    write_page(page, _page(found, facts, plain(content["indicators"]), blocks))
     return page
 
 

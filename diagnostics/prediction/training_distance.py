@@ -139,14 +139,8 @@ def _line(log_speed: np.ndarray, column: np.ndarray) -> tuple[float, float]:
     return float(y.mean() - slope * x.mean()), slope
 
 
-def part_facts(found: DistancePart) -> dict[str, Any]:
-    """Return the distance as JSON can hold it."""
-    arrays = {name: getattr(found, name).tolist() for name in ARRAYS}
-    return {"features": list(found.features), **arrays, "scale": found.scale}
-
-
 def part_from_facts(facts: dict[str, Any]) -> DistancePart:
-    """Return what `part_facts` wrote.
+    """Return the distance that its fields in JSON are of.
 
     Raises
     ------
@@ -308,18 +302,8 @@ def _held_out(
     return found, single
 
 
-def distance_facts(found: TrainingDistance) -> dict[str, Any]:
-    """Return the distance as JSON can hold it."""
-    return {
-        "parts": [part_facts(part) for part in found.parts],
-        "threshold": found.threshold,
-        "held_out_specimens": found.held_out_specimens,
-        "largest_spreads": found.largest_spreads if np.isfinite(found.largest_spreads) else None,
-    }
-
-
 def distance_from_facts(facts: dict[str, Any]) -> TrainingDistance:
-    """Return what `distance_facts` wrote.
+    """Return the distance that its fields in JSON are of.
 
     Raises
     ------

@@ -14,7 +14,7 @@ import pytest
 from tests.house.source_tree import ROOT, imports, modules
 
 SIGGEN_ROOMS = (
-    "uncollected", "errors", "names", "live_process", "file_writing", "printable", "sources", "seeding",
+    "uncollected", "errors", "names", "live_process", "file_writing", "printable", "plain_json", "sources", "seeding",
     "child_environment", "arrays", "compiled", "uniform_spline", "lanes", "keys",
     "gears", "drivetrain", "damage", "mesh", "motion", "sensing", "noise", "sensors", "life", "config", "rig",
     "gearbox", "columns", "record", "checks", "dataset", "workers", "sets", "views", "publication", "library", "cli",
@@ -32,9 +32,13 @@ DOOR = {
     "siggen", "siggen.errors", "siggen.printable", "siggen.columns.record", "siggen.columns.drivetrain",
     "siggen.dataset.reading", "siggen.keys.column",
 }  # fmt: skip
-SHARED = {"siggen.child_environment", "siggen.dataset.seal", "siggen.file_writing", "siggen.keys.yaml_source"} | {
-    f"siggen.cli.{name}" for name in ("echo", "option_groups", "json_output")
-}
+SHARED = {
+    "siggen.child_environment",
+    "siggen.dataset.seal",
+    "siggen.file_writing",
+    "siggen.keys.yaml_source",
+    "siggen.plain_json",
+} | {f"siggen.cli.{name}" for name in ("echo", "option_groups", "json_output")}
 """What both programs are built with; it knows no set."""
 TREE = {package: modules(package) for package in ROOMS}
 KNOWN = {name for paths in TREE.values() for name in paths}

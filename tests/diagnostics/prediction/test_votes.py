@@ -17,6 +17,7 @@ from diagnostics.prediction.prediction_page import prediction_facts, prediction_
 from diagnostics.prediction.released_model import ReleasedModel, load_model
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from siggen.errors import UsageError
+from siggen.plain_json import plain
 from tests.diagnostics.prediction.resealed_model import reseal
 
 FS_HZ = 12_800.0
@@ -78,7 +79,8 @@ def test_a_vote_comes_with_the_accuracy_that_training_measured(
 ) -> None:
     found = predicted(model, signals)
     expected = json.loads((model.folder / "model.json").read_text())["scores"]["test"]["indicators"]["accuracy"]
-    assert prediction_facts(found, model.facts)["probabilities"]["indicators"]["test_accuracy"] == expected
+    told = plain(prediction_facts(found, model.facts))
+    assert told["probabilities"]["indicators"]["test_accuracy"] == expected
     assert f"right in {expected['value']:.0%} of its test records" in dict(prediction_rows(found))["by indicators"]
 
 
