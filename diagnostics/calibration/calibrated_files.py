@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 
 from diagnostics.calibration.calibration import Calibration, ChannelFit
-from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted
+from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS
 from diagnostics.calibration.noise_fit import NoiseFit
 from diagnostics.calibration.own_lines import OwnLine
 from diagnostics.calibration.path_draws import PathDraw
 from diagnostics.calibration.source_library import sampled_as
+from diagnostics.statistics.evaluation import Interval
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
 from siggen.plain_json import json_text
@@ -235,11 +236,11 @@ ALWAYS_OPEN = (
 )
 
 
-def _interval(value: Fitted) -> str:
+def _interval(value: Interval) -> str:
     return f"90 % [{value.low:.1f}, {value.high:.1f}]" if np.isfinite(value.low) else TOO_FEW
 
 
-def _depth(value: Fitted) -> str:
+def _depth(value: Interval) -> str:
     """Return the range of a depth: its interval; where unknown, half to twice its value, up to 0.1 at least."""
     low = max(value.low, 0.0) if np.isfinite(value.low) else 0.5 * value.value
     high = min(value.high if np.isfinite(value.high) else max(2.0 * value.value, 0.1), 1.0)

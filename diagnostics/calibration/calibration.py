@@ -14,7 +14,7 @@ import numpy as np
 
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.calibration.drivetrain import TrainOrders
-from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted, HealthyBlocks, jackknife
+from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, HealthyBlocks, jackknife
 from diagnostics.calibration.noise_fit import UNKNOWN_SPREAD_DB, NoiseFit, SensorFit, noise_fit, sensor_fit
 from diagnostics.calibration.order_record import (
     HIGHEST_SHARE,
@@ -30,6 +30,7 @@ from diagnostics.calibration.rig import CalibratedRig, check_meshes
 from diagnostics.calibration.second_stage import SecondStage, StageLine, second_stage, stage_lines, wave_lines
 from diagnostics.calibration.shaft_multiples import Multiples, machine_multiples
 from diagnostics.calibration.source_library import SourceLibrary, source_library
+from diagnostics.statistics.evaluation import Interval
 from siggen.errors import UsageError
 
 GRID_STEPS = 1024
@@ -53,7 +54,7 @@ class ChannelFit:
     """
 
     name: str
-    levels: tuple[Fitted, ...]
+    levels: tuple[Interval, ...]
     lines: ChannelLines
     noise: NoiseFit
     own: tuple[OwnLine, ...]
@@ -266,7 +267,7 @@ def _strongest(lines: Iterable[OwnLine], most: int) -> tuple[OwnLine, ...]:
     return tuple(sorted(lines, key=lambda line: -line.amplitude)[:most])
 
 
-def _levels(records: tuple[OrderRecord, ...], groups: tuple[LineGroup, ...]) -> tuple[Fitted, ...]:
+def _levels(records: tuple[OrderRecord, ...], groups: tuple[LineGroup, ...]) -> tuple[Interval, ...]:
     """Return the level of every group with all of its lines, foreign ones too; NaN where it stands out not always."""
     found = [group_levels(record, groups) for record in records]
     energy = np.array([10.0 * np.log10(np.maximum(level, 1e-30)) for level, _ in found])

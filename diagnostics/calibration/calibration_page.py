@@ -14,7 +14,7 @@ import numpy as np
 from diagnostics.audit.envelope import BACKGROUND_QUANTITIES
 from diagnostics.calibration.calibrated_files import TOO_FEW, data_folder, not_identified, stage_sentence
 from diagnostics.calibration.calibration import Calibration
-from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted, HealthyBlocks
+from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, HealthyBlocks
 from diagnostics.calibration.interval_coverage import interval_coverage
 from diagnostics.calibration.likeness import (
     LEVELS,
@@ -41,6 +41,7 @@ from diagnostics.page.blocks import (
 from diagnostics.page.style import FAULT_COLOURS, GEAR_COLOUR, HEALTHY_COLOUR, new_figure, png_bytes, styled
 from diagnostics.page.template import write_page
 from diagnostics.page.wording import counted, decimal, percent
+from diagnostics.statistics.evaluation import Interval
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -182,7 +183,7 @@ def _fitted_table(found: Calibration) -> TableBlock:
     rows = []
     for channel in found.channels:
         noise = channel.noise
-        facts: dict[str, Fitted] = {
+        facts: dict[str, Interval] = {
             "noise in all [dB re 1 (m/s²)²]": noise.level_db,
             **{
                 f"modulation once per {shaft.name} turn": depth

@@ -23,6 +23,7 @@ from diagnostics.recordings.measured_recording import MeasuredRecording, read_re
 from diagnostics.recordings.shaft_pulses import shaft_pulses
 from diagnostics.recordings.taken import RecordingFacts
 from diagnostics.records.gear_train import train_of
+from diagnostics.statistics.evaluation import UNDEFINED, Interval
 from siggen.errors import UsageError
 
 CONFIDENCE = 0.9
@@ -34,33 +35,24 @@ FEWEST_TURNS = 10
 Source = tuple[Path, int | None]
 
 
-@dataclass(frozen=True, slots=True)
-class Fitted:
-    """A number, and limits that hold it with a confidence of 90 %, infinite from fewer than three recordings."""
+def jackknife(values: np.ndarray) -> Interval:
+    """Return the mean of recordings (n,) with limits that hold it with a confidence of 90 %.
 
-    value: float
-    low: float
-    high: float
-
-    def __str__(self) -> str:
-        return f"{self.value:.3g} [{self.low:.3g}, {self.high:.3g}]"
-
-
-def jackknife(values: np.ndarray) -> Fitted:
-    """Return the mean of recordings (n,) with its interval."""
+    From fewer than three recordings the limits are undefined.
+    """
     from scipy.special import stdtrit
 
     known = np.asarray(values, dtype=np.float64)
     known = known[np.isfinite(known)]
     if not known.size:
-        return Fitted(math.nan, -math.inf, math.inf)
+        return UNDEFINED
     whole = float(known.mean())
     if known.size < FEWEST_RECORDINGS:
-        return Fitted(whole, -math.inf, math.inf)
+        return Interval(whole, math.nan, math.nan)
     without = np.array([np.delete(known, k).mean() for k in range(known.size)])
     error = math.sqrt((known.size - 1) / known.size * float(np.square(without - without.mean()).sum()))
     reach = float(stdtrit(known.size - 1, 0.5 + 0.5 * CONFIDENCE)) * error
-    return Fitted(whole, whole - reach, whole + reach)
+    return Interval(whole, whole - reach, whole + reach)
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from diagnostics.calibration.calibration import Calibration
-from diagnostics.calibration.healthy_blocks import Fitted, HealthyBlocks
+from diagnostics.calibration.healthy_blocks import HealthyBlocks
 from diagnostics.calibration.order_record import HIGHEST_SHARE, group_levels, line_groups, order_record
+from diagnostics.statistics.evaluation import Interval
 
 
 def interval_coverage(found: Calibration, held_out: HealthyBlocks) -> tuple[int, int]:
@@ -30,7 +31,7 @@ def interval_coverage(found: Calibration, held_out: HealthyBlocks) -> tuple[int,
     return sum(known), len(known)
 
 
-def _holds(fitted: Fitted, power: np.ndarray) -> bool | None:
+def _holds(fitted: Interval, power: np.ndarray) -> bool | None:
     """Return whether an interval holds the mean level of other powers (recordings,); None where there is none."""
     if not np.isfinite([fitted.low, fitted.high]).all() or not (power > 0.0).all():
         return None

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted, HealthyBlock, jackknife
+from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, HealthyBlock, jackknife
 from diagnostics.calibration.order_record import OrderRecord, turns_of
 from diagnostics.signal.synchronous_average import asynchronous_part, band_signal
+from diagnostics.statistics.evaluation import Interval
 
 LARGEST_BITS = 24
 HEADROOM = 32.0
@@ -78,25 +79,25 @@ class NoiseFit:
     ----------
     frequency_hz, density : (knots,) float64
         One-sided density of the floor [unit/√Hz], mean in dB over recordings.
-    level_db : Fitted
+    level_db : Interval
         Level of all noise [dB re 1 unit²].
     spread_db : float
         Half the range in which a record's level is drawn: at least LEAST_SPREAD_DB, and UNKNOWN_SPREAD_DB from fewer
         than three recordings.
-    driver_depth, driven_depth, level_std : Fitted
+    driver_depth, driven_depth, level_std : Interval
         As keys of `noise_spectrum.modulation`.
     """
 
     frequency_hz: np.ndarray
     density: np.ndarray
-    level_db: Fitted
+    level_db: Interval
     spread_db: float
-    driver_depth: Fitted
-    driven_depth: Fitted
-    level_std: Fitted
+    driver_depth: Interval
+    driven_depth: Interval
+    level_std: Interval
 
     @property
-    def depths(self) -> tuple[Fitted, Fitted]:
+    def depths(self) -> tuple[Interval, Interval]:
         """How deep the first and the second shaft modulate it."""
         return self.driver_depth, self.driven_depth
 

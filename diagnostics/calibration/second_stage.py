@@ -23,10 +23,11 @@ from math import gcd
 import numpy as np
 
 from diagnostics.calibration.drivetrain import TrainOrders
-from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, Fitted, jackknife
+from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, jackknife
 from diagnostics.calibration.order_record import SAME_ORDER
 from diagnostics.calibration.own_lines import LEAST_SPREAD, SHAFT_ORDERS, UNKNOWN_SPREAD, OwnLine
 from diagnostics.calibration.shaft_multiples import Multiples, ShaftMultiples
+from diagnostics.statistics.evaluation import Interval
 
 WAVE_EXCESS_DB = 6.0
 """Chosen on one simulated machine, from 10 and 6 dB: docs/understand/calibration.md."""
@@ -95,7 +96,7 @@ class StageLine:
     """A line at a whole order of a shaft: name, level [dB re 1 unit²] and how it is drawn."""
 
     name: str
-    level_db: Fitted
+    level_db: Interval
     line: OwnLine
 
 

@@ -146,8 +146,7 @@ class JudgedDetector:
         told = {"every damage": (self.every, self.share)} | {k: (s.auc, s.share) for k, s in self.states.items()}
         told |= {"sham": (self.sham, None)} if self.sham else {}
         rows = [
-            f"  {name}: AUC {auc.value:.3f} [{auc.low:.3f}, {auc.high:.3f}]"
-            + (f", alarms {share.value:.0%} [{share.low:.0%}, {share.high:.0%}]" if share else "")
+            f"  {name}: AUC {auc:.3f}" + (f", alarms {share:.0%}" if share else "")
             for name, (auc, share) in told.items()
         ]
         return "\n".join([head, *rows])

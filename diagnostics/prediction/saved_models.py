@@ -29,7 +29,7 @@ from diagnostics.records.record_classes import STATE, set_classes
 from diagnostics.records.recording import names_of, recordings
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.scoring.prediction_file import predicted_rows, write_predictions
-from diagnostics.statistics.evaluation import Interval, IntervalScores
+from diagnostics.statistics.evaluation import IntervalScores
 from diagnostics.training.feature_classifier import FeatureClassifier, save_classifier
 from diagnostics.training.realism import meaning_of_scores
 from diagnostics.training.referenced import healthy_referenced, log_values, reference_speed_ratio
@@ -265,8 +265,8 @@ def _scores(training: Training) -> str:
 def _row(found: Judged) -> str:
     permuted = f"{found.permuted_auroc.mean():.2f}" if found.permuted_auroc.size else "-"
     scores = (found.scores.accuracy, found.scores.balanced_accuracy, found.scores.macro_auroc)
-    detected = interval_text(found.detection.every) if found.detection else "-"
-    cells = (found.name, *map(interval_text, scores), detected, permuted)
+    detected = f"{found.detection.every:.2f}" if found.detection else "-"
+    cells = (found.name, *(f"{score:.2f}" for score in scores), detected, permuted)
     return f"| {' | '.join(cells)} |"
 
 
@@ -280,7 +280,7 @@ def _probabilities(training: Training) -> str:
             [
                 judged.name,
                 f"{found.temperature:.2f}",
-                *map(interval_text, (found.brier_before, found.brier, found.before, found.after)),
+                *(f"{score:.2f}" for score in (found.brier_before, found.brier, found.before, found.after)),
                 f"{found.honest:.2f}",
             ]
         )
@@ -293,15 +293,6 @@ def _probabilities(training: Training) -> str:
         "where it does not help validation specimens that are left out of its fit. Chance alone makes the calibration "
         "error positive. The last column gives its value on these records if the probabilities (with T) were true."
     )
-
-
-def interval_text(found: Interval) -> str:
-    """Return value and limits with two decimals, or 'undefined'."""
-    if found.value != found.value:
-        return "undefined"
-    if found.low != found.low:
-        return f"{found.value:.2f} (no interval)"
-    return f"{found.value:.2f} [{found.low:.2f}, {found.high:.2f}]"
 
 
 def release_card(found: Release) -> str:

@@ -5,7 +5,6 @@ Scores of predictions as rows: for reading, and as a table for further use.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -36,7 +35,6 @@ from diagnostics.statistics.evaluation import (
     FEWEST_THAT_AGREE,
     RESAMPLES,
     UNDEFINED,
-    Interval,
     area_interval,
     bootstrap_weights,
     interval,
@@ -44,6 +42,7 @@ from diagnostics.statistics.evaluation import (
 from diagnostics.statistics.indicator_statistics import LARGEST_BLOCK
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, counted
+from siggen.plain_json import plain
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -83,8 +82,8 @@ class Scores:
 
     def numbers(self) -> list[dict[str, object]]:
         """Return the same for JSON, undefined as None."""
-        rows = (self._entry(row).items() for row in self.rows)
-        return [{name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in row} for row in rows]
+        rows: list[dict[str, object]] = plain([self._entry(row) for row in self.rows])
+        return rows
 
     def to_frame(self) -> Any:
         """Return the same as a pandas data frame.
@@ -127,8 +126,8 @@ class Scores:
             if title != block:
                 lines += ["", title]
                 block = title
-            difference = f"   {first} minus this {_shown(row.difference, '+.3f')}" if row.difference else ""
-            lines.append(f"  {TITLES.get(row.name, row.name):{width}}  {_shown(row.score, '.3f')}{difference}")
+            difference = f"   {first} minus this {row.difference:+.3f}" if row.difference else ""
+            lines.append(f"  {TITLES.get(row.name, row.name):{width}}  {row.score:.3f}{difference}")
         if self.gearboxes < FEWEST_THAT_AGREE:
             few = counted(self.gearboxes, "gearbox", "gearboxes")
             lines += ["", f"{few}: too few to tell classifiers apart; that takes {FEWEST_THAT_AGREE}"]
@@ -156,12 +155,6 @@ class Scores:
         apart = best.difference or UNDEFINED
         beside = side(apart.low, apart.high)
         return f"{text}, and {beside} {TITLES.get(best.name, best.name)} ({best.score.value:.2f}), the best other."
-
-
-def _shown(found: Interval, form: str) -> str:
-    if not math.isfinite(found.low):
-        return f"{found.value:{form}} [no limits]"
-    return f"{found.value:{form}} [{found.low:{form}}, {found.high:{form}}]"
 
 
 def score(

@@ -34,7 +34,7 @@ UNKNOWN = -1
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """A value with the limits of its bootstrap interval; both limits are NaN with fewer than two specimens."""
+    """A value with the limits of its interval; both limits are NaN where too few specimens or recordings tell them."""
 
     value: float
     low: float
@@ -44,6 +44,13 @@ class Interval:
         """Return value and limits for JSON, undefined as null."""
         named = {"value": self.value, "low": self.low, "high": self.high}
         return {name: float(number) if math.isfinite(number) else None for name, number in named.items()}
+
+    def __format__(self, form: str) -> str:
+        """Return value and limits as text, each in a form such as `.2f`."""
+        if math.isnan(self.value):
+            return "undefined"
+        limits = f"{self.low:{form}}, {self.high:{form}}" if math.isfinite(self.low) else "no limits"
+        return f"{self.value:{form}} [{limits}]"
 
 
 UNDEFINED = Interval(math.nan, math.nan, math.nan)

@@ -8,17 +8,18 @@ import numpy as np
 import pytest
 
 from diagnostics.calibration.calibration import path_gains
-from diagnostics.calibration.drivetrain import pair
+from diagnostics.calibration.drivetrain import drivetrain
 from diagnostics.calibration.healthy_blocks import HealthyBlock, healthy_blocks, jackknife
 from diagnostics.calibration.noise_fit import noise_fit, smallest_step
 from diagnostics.calibration.order_record import order_record
 from diagnostics.calibration.own_lines import own_lines
 from diagnostics.calibration.path_draws import housing_mass_kg, liftered, minimum_phase, path_level_db, path_level_doubt
 from diagnostics.recordings.taken import RecordingFacts
+from diagnostics.records.gear_train import pair_train
 
 FS_HZ, TEETH, SAMPLES = 25_600.0, (18, 47), 102_400
 TIME_S = np.arange(SAMPLES) / FS_HZ
-PAIR = pair(TEETH)
+PAIR = drivetrain(pair_train(TEETH))
 
 
 def block(signal: np.ndarray, speed_hz: float) -> HealthyBlock:
