@@ -26,8 +26,8 @@ DEFAULT = (
     *("workers", "quickstart", "indicators", "pages", "house"),
 )
 """CPU time and memory first, then wall time, then what takes long."""
-APART = ("anywhere", "start")
-"""Only where they are named: each takes half an hour."""
+APART = ("anywhere", "start", "many_workers")
+"""Only where they are named: each takes long."""
 
 
 def main(package: str = "benchmarks", default: Sequence[str] = DEFAULT, apart: Sequence[str] = APART) -> int:

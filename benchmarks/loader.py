@@ -1,4 +1,4 @@
-"""Shuffled windows of a loader beside the plain decoding of the same file by pyarrow from front to back."""
+"""Shuffled windows of a loader, a scan and random records beside plain decoding of the same files by pyarrow."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pyarrow.parquet as pq
 
 import siggen
@@ -16,6 +17,7 @@ from benchmarks.timing import Candidate, medians
 from diagnostics.loader.window_index import StreamSettings
 from diagnostics.loader.window_stream import WindowLoader, WindowStream
 from siggen.columns.record import signal_matrix
+from siggen.dataset.reading import Split
 
 GOAL = 0.8
 HALF_A_RECORD = StreamSettings(revolutions=8, hop_revolutions=8, samples_per_revolution=None)
@@ -36,6 +38,10 @@ def rows(*, quick: bool) -> Iterator[Row]:
         }
         candidates = {name: Candidate(lambda _, s=stream: _drained(s)) for name, stream in streams.items()}
         sequential = Candidate(lambda _: _decoded(dataset))
+        candidates["scan"] = Candidate(lambda _: list(siggen.open(dataset.path).records("train", columns)))
+        candidates["random"] = Candidate(lambda _: _drawn(siggen.open(dataset.path)["train"]))
+        columns = [channel.column for channel in dataset.channels]
+        megabytes = 4e-6 * len(dataset.channels) * round(dataset.fs_hz * dataset.duration_s)
         _drained(streams["cached"])  # which fills the cache
         cost_s = medians({"sequential": sequential, **candidates}, 3 if quick else 9, time.process_time)
     speed = {name: count / cost for name, cost in cost_s.items()}
@@ -48,6 +54,18 @@ def rows(*, quick: bool) -> Iterator[Row]:
         ratio = speed[name] / speed["sequential"]
         goal = (f">= {GOAL:g}", ratio >= GOAL) if name == "shuffled" else ("", None)
         yield Row(what, f"{speed[name]:.0f} records/s", decoding, ratio, *goal)
+    for name, what, least in (
+        ("scan", "signals of all records in order", 300.0),
+        ("random", "records in random order", 100.0),
+    ):
+        found = megabytes * speed[name]
+        measured = f"{found:.0f} MB of signals per CPU s"
+        yield Row(f"{what}, opened anew", measured, decoding, None, f">= {least:.0f}", found >= least)
+
+
+def _drawn(split: Split) -> None:
+    for number in np.random.default_rng(0).permutation(len(split)):
+        split[int(number)]
 
 
 def _drained(stream: WindowStream) -> None:

@@ -16,7 +16,7 @@ import pyarrow.compute as pc
 import yaml
 
 from siggen.columns.drivetrain import GearTrain
-from siggen.columns.record import TACHO_COLUMN, ChannelColumn, signal_channels, signal_matrix
+from siggen.columns.record import TACHO_COLUMN, ChannelColumn, signal_matrix
 from siggen.dataset.inventory import Inventory, ListedColumn, ListedShard, PromisedFile
 from siggen.dataset.manifest import CARD, CONFIG, read_manifest
 from siggen.dataset.object_name import DAMAGE, LABELS, LIFE_FOLDER, SPLITS, life_name
@@ -324,9 +324,9 @@ class Dataset:
         """Return a table whose every byte is what is promised, before anything is decoded."""
         content = self.content(name)
         try:
-            if columns is not None:
+            table = unpacked(content, columns, hashed=True)
+            if columns is not None and not set(columns) <= set(table.column_names):
                 self._check_columns(columns_of(content), columns)
-            table = unpacked(content, columns)
             check_form(table, form_of(name, self.inventory, table.column_names), asked=columns)
         except VerificationError as error:
             raise self._broken(name, str(error)) from error
@@ -466,7 +466,7 @@ def _check_batch_rows(batch_rows: object) -> None:
 
 def as_record(row: pa.Table | pa.RecordBatch) -> dict[str, Any]:
     """Return the first row: labels as Python values, signals and pulse times as arrays."""
-    signals = {channel.column for channel in signal_channels(row.schema)}
+    signals = {field.name for field in row.schema if pa.types.is_fixed_size_list(field.type)}
     record: dict[str, Any] = {}
     for name in row.schema.names:
         column = row.column(name)

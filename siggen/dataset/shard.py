@@ -30,7 +30,7 @@ SPLIT_BYTES = "BYTE_STREAM_SPLIT"
 MOST_BYTES = 1 << 36
 """Decoded: above that a table lies about itself."""
 
-GROUP_ROWS = 1 << 15
+GROUP_ROWS = 1 << 13
 """Rows of a row group of the tables that hold a row per record or damage."""
 
 
@@ -84,15 +84,15 @@ class PackedTable:
         self._writer.write_table(rows.combine_chunks(), row_group_size=GROUP_ROWS)
 
 
-def unpacked(content: bytes, columns: Sequence[str] | None = None) -> pa.Table:
-    """Return the rows of a table, whose bytes were compared with their hash before unless nobody knows it yet.
+def unpacked(content: bytes, columns: Sequence[str] | None = None, *, hashed: bool = False) -> pa.Table:
+    """Return the rows of a table; its pages are compared with their checksums unless all of it was with its hash.
 
     Raises
     ------
     VerificationError
         If it is no Parquet, or a page does not match its checksum.
     """
-    with _opened(content) as file:
+    with _opened(content, hashed=hashed) as file:
         footer = file.metadata
         size = sum(footer.row_group(i).total_byte_size for i in range(footer.num_row_groups))
         if not 0 <= size <= MOST_BYTES:
@@ -107,9 +107,9 @@ def columns_of(content: bytes) -> list[str]:
 
 
 @contextmanager
-def _opened(content: bytes) -> Iterator[pq.ParquetFile]:
+def _opened(content: bytes, *, hashed: bool = False) -> Iterator[pq.ParquetFile]:
     try:
-        with pq.ParquetFile(pa.BufferReader(content), page_checksum_verification=True) as file:
+        with pq.ParquetFile(pa.BufferReader(content), page_checksum_verification=not hashed) as file:
             yield file
     except (OSError, pa.ArrowException, ValueError, KeyError, OverflowError, RuntimeError) as error:
         raise VerificationError(f"it cannot be decoded ({error})") from error

@@ -48,19 +48,20 @@ def check_form(table: pa.Table, form: Form, *, asked: Collection[str] | None = N
     VerificationError
         If a column is missing, twice, of another type, or holds nulls.
     """
-    if len(set(table.column_names)) != len(table.column_names):
+    found = dict(zip(table.column_names, table.columns, strict=True))
+    if len(found) != table.num_columns:
         raise VerificationError("it has two columns of one name")
     for name, kind in form.items():
         if asked is not None and name not in asked:
             continue
-        if name not in table.column_names:
+        if name not in found:
             raise VerificationError(f"it has no column {name}")
-        if not _alike(table.schema.field(name).type, kind):
-            raise VerificationError(f"its column {name} is of type {table.schema.field(name).type} instead of {kind}")
-    for name, column in zip(table.column_names, table.columns, strict=True):
+        if not _alike(found[name].type, kind):
+            raise VerificationError(f"its column {name} is of type {found[name].type} instead of {kind}")
+    for name, column in found.items():
         if column.null_count and name not in NULLABLE:
             raise VerificationError(f"its column {name} holds nulls")
-        if _is_list(column.type) and any(chunk.flatten().null_count for chunk in column.chunks):
+        if _is_list(column.type) and any(chunk.values.null_count for chunk in column.chunks):
             raise VerificationError(f"its column {name} holds lists with nulls")
 
 

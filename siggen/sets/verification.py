@@ -24,7 +24,7 @@ from siggen.dataset.seal import unsealed
 from siggen.dataset.shard import about_of, packed, unpacked
 from siggen.dataset.storage import LocalFolder, Storage
 from siggen.dataset.storage_at import storage_at
-from siggen.errors import ConfigError, DatasetError, VerificationError, counted
+from siggen.errors import ConfigError, DatasetError, UsageError, VerificationError, counted
 from siggen.gearbox.design import SetDesign, stored_design
 from siggen.sets import physics as contents
 from siggen.sets.record_comparison import result_difference
@@ -204,16 +204,17 @@ def _physics(storage: Storage) -> Iterator[Mismatch]:
 
 def _other_labels(storage: Storage, manifest: Inventory) -> Iterator[Mismatch]:
     """Yield the shards that say something else of their records than the labels, which a stranger may have sealed."""
+    dataset = Dataset(storage)
     try:
-        labels = Dataset(storage).labels()
+        labels = dataset.labels()
     except DatasetError as error:
         yield Mismatch(LABELS, str(error))
         return
     first = 0
     for shard in manifest.shards:
         try:
-            own = unpacked(storage.get(shard.file), labels.column_names)
-        except VerificationError as error:
+            own = pa.Table.from_batches([dataset.shard_rows(shard, labels.column_names)])
+        except (DatasetError, UsageError) as error:
             yield Mismatch(shard.file, str(error))
             continue
         if _bytes(own) != _bytes(labels.slice(first, shard.rows)):
