@@ -127,7 +127,7 @@ class Cluster(Executor):
 
 def measured(one: Path, records: int, workers: int) -> dict[str, float]:
     """Return what a run of so many records took."""
-    from siggen.dataset.environment import peak_memory_bytes
+    from benchmarks.peak_memory import peak_memory_bytes
     from siggen.dataset.storage import LocalFolder
     from siggen.sets import set_run
     from siggen.sets.interruption import Interruption

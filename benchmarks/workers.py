@@ -53,7 +53,7 @@ def run_facts(workers: int, *overrides: str) -> dict:
 
 def _generate(folder: str, workers: str, *overrides: str) -> None:
     import siggen
-    from siggen.dataset.environment import peak_memory_bytes
+    from benchmarks.peak_memory import peak_memory_bytes
 
     done = siggen.generate(siggen.load_config(QUICKSTART, overrides), folder, int(workers))
     facts = {"seconds": done.seconds, "records_made": done.records_made}
@@ -97,7 +97,7 @@ def _import_memory_bytes() -> int:
     A small process starts it: what the starting process holds counts as the peak of the started one.
     """
     code = (
-        "import subprocess, sys; from siggen.dataset.environment import peak_memory_bytes;"
+        "import subprocess, sys; from benchmarks.peak_memory import peak_memory_bytes;"
         "subprocess.run([sys.executable, '-c', 'import siggen.record.simulation'], check=True);"
         "print(peak_memory_bytes()['largest_worker'])"
     )

@@ -97,7 +97,7 @@ class SaidReading:
             return None
         if "," not in said:
             return known_speed_range_hz(said)
-        low, high = two_numbers(said, "--speed", "14,26")
+        low, high = two_numbers(said, "--speed", "two numbers with a comma: 14,26")
         if not 0.0 < low < high < inf:
             raise UsageError(f"--speed: received {low:g} to {high:g} Hz; allowed is 0 < low < high")
         return low, high
@@ -214,18 +214,18 @@ def file_rows(said: str) -> list[tuple[Path, int | None]]:
     return [(Path(file), int(row)) for row in rows.split(",")]
 
 
-def two_numbers(said: str, option: str, example: str) -> tuple[float, float]:
+def two_numbers(said: str, option: str, allowed: str) -> tuple[float, float]:
     """Return two numbers with a comma between.
 
     Raises
     ------
     UsageError
-        If they are not; names the option and an example.
+        If they are not; names the option and what is allowed.
     """
     try:
         first, second = (float(part) for part in said.split(","))
     except ValueError as error:
-        raise UsageError(f"{option}: received {said!r}; allowed are two numbers with a comma: {example}") from error
+        raise UsageError(f"{option}: received {said!r}; allowed are {allowed}") from error
     return first, second
 
 
@@ -237,7 +237,8 @@ def two_gears(said: str) -> tuple[int, int]:
     UsageError
         If they are not two whole numbers from 3 on.
     """
-    first, second = two_numbers(said, "--teeth", "18,47")
+    allowed = "two whole numbers from 3 on, such as 18,47, or the YAML file of a configuration"
+    first, second = two_numbers(said, "--teeth", allowed)
     if min(first, second) < 3 or first % 1 or second % 1:
-        raise UsageError(f"--teeth: received {said}; allowed are two whole numbers from 3 on")
+        raise UsageError(f"--teeth: received {said}; allowed are {allowed}")
     return int(first), int(second)

@@ -50,7 +50,9 @@ def with_sizes(raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[Problem]]:
     if not isinstance(dynamics, Mapping):
         return dict(raw), []
     if beside := [key for key in OTHERS if raw.get(key)]:
-        return dict(raw), list(_unused(dynamics, beside[0]))
+        problems = list(_unused(dynamics, beside[0]))
+        told = {problem.path.removeprefix("dynamics.") for problem in problems}  # one slip is told once
+        return {**raw, "dynamics": {key: given for key, given in dynamics.items() if key not in told}}, problems
     rated = dynamics.get(RATED)
     if rated is None:
         return dict(raw), []

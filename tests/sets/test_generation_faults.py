@@ -152,7 +152,7 @@ def test_a_record_that_kills_every_worker_ends_with_an_error_that_names_its_shar
 MEMORY = """
 import sys
 from pathlib import Path
-from siggen.dataset.environment import peak_memory_bytes
+from benchmarks.peak_memory import peak_memory_bytes
 from siggen.sets.generation import generate
 from tests.dataset.fake_set import fake_config, fake_physics
 if __name__ == "__main__":
