@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 PAGE = "machine.html"
 SHORTEST_SPAN = timedelta(hours=12)
 """Beside the first and the last check, so that those of one call stand over their date."""
+FINE = 10.0
+"""Largest over smallest distance up to which the axis has more marks than 1, 2 and 5."""
 TREND = (
     "Distance from the healthy recordings by the time of each check (UTC), over the limit of that check. Above 1 a "
     "recording counts as changed. The unchanged machine exceeds 1 as often as the rate of false alarms says. Checks "
@@ -141,7 +143,10 @@ def _trend(history: Sequence[PastCheck]) -> Figure:
             axis.plot(*zip(*places, strict=True), marker, color=colour, label=verdict, markersize=5)
     axis.axhline(1.0, color="#1c2733", linewidth=1.2, label="limit")
     axis.set_yscale("log")
-    axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    low, high = axis.get_ylim()
+    axis.yaxis.set_major_locator(
+        LogLocator(subs=(1.0, 2.0, 5.0) if high > FINE * low else (1.0, 1.2, 1.5, 2.0, 3.0, 5.0, 7.0))
+    )
     axis.yaxis.set_major_formatter("{x:g}")
     axis.yaxis.set_minor_formatter(NullFormatter())
     if known:

@@ -47,10 +47,13 @@ GEARBOXES, DURATION_S, TIMES, MANY = 33, 3.0, 10, 101
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 SEEN: tuple[tuple[str, tuple[int, int], tuple[str, ...]], ...] = (
     ("1280 x 800", (1280, 800), ()),
-    ("500 x 844", (500, 844), ()),
+    ("390 x 844", (390, 844), ()),
     ("dark", (1280, 800), ("--blink-settings=preferredColorScheme=0",)),
 )
 """How pages are looked at: name, window, flags of the browser."""
+
+NARROWEST = 500
+"""No window of the browser is narrower [px]; a page that is seen in less stands in a frame."""
 
 WATCH = """window.found={errors:[]};
 addEventListener("error",(e)=>found.errors.push(String(e.message)));
@@ -109,15 +112,17 @@ def instrumented(page: str, more: str, asked: str = MEASURE) -> str:
 def measured(program: str, page: str, size: tuple[int, int], flags: Sequence[str] = ()) -> dict[str, Any]:
     """Return what a browser found on a page."""
     answers: list[dict[str, Any]] = []
+    narrow = size[0] < NARROWEST
+    framed = f'<!doctype html><iframe src="/page" width="{size[0]}" height="{size[1]}"></iframe>' if narrow else ""
     done = threading.Event()
 
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:
-            self.send_response(200 if self.path == "/" else 204)
+            sent = {"/": framed or page, "/page": page}.get(self.path)
+            self.send_response(204 if sent is None else 200)
             self.send_header("Content-Type", "text/html; charset=utf-8")
             self.end_headers()
-            if self.path == "/":
-                self.wfile.write(page.encode("utf-8"))
+            self.wfile.write((sent or "").encode("utf-8"))
 
         def do_POST(self) -> None:
             answers.append(json.loads(self.rfile.read(int(self.headers["Content-Length"]))))

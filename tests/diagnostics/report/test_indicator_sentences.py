@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
 from diagnostics.page.blocks import Page
 from diagnostics.page.template import page_html
 from diagnostics.records.gear_train import PAIR
-from diagnostics.report.indicators import best_by_state, indicator_findings, undefined_html
+from diagnostics.report.indicators import best_by_state, indicator_findings, own_ranks, undefined_html
 from diagnostics.statistics.evaluation import UNDEFINED, Interval
 from diagnostics.statistics.indicator_statistics import IndicatorResult, StateResult
 
@@ -61,6 +63,20 @@ def test_few_specimens_are_told_how_many_a_correction_takes() -> None:
     (text,) = [t for t in indicator_findings([result("rms", {"slight": state(0.9)})], ("slight",), 4) if "Holm" in t]
     # 2^(1 - n) below 0.05 for one comparison: n = 6
     assert "At least 6 specimens are needed before any of 1\xa0comparison can pass" in text
+
+
+def test_an_own_indicator_is_told_its_rank_by_its_best_channel_and_none_without_damage() -> None:
+    rises, mine = result("rms", {"slight": state(0.8)}), result("crest", {"slight": state(0.7)})
+    worse = replace(mine, column="crest__y", channel="y")
+    found = SimpleNamespace(found=[rises, mine, worse], records=SimpleNamespace(states=("slight",)))
+    (said,) = own_ranks(found)
+    assert said.startswith("Your indicator crest at x has rank 2 of 3 columns")
+    assert "AUC over the states 0.70 (0.60 to 0.90), 0.5 is chance." in said
+    assert own_ranks(SimpleNamespace(found=[mine], records=SimpleNamespace(states=()))) == []
+    mine.score_others = UNDEFINED
+    (said,) = own_ranks(SimpleNamespace(found=[mine], records=SimpleNamespace(states=("slight",))))
+    assert "has no rank" in said
+    assert "nan" not in said
 
 
 def test_nothing_defined_is_said_and_no_number_is_made_up() -> None:
