@@ -168,7 +168,7 @@ def test_an_error_in_area_is_that_of_its_mean(dataset: Any) -> None:
         diagnostics.score(dataset, {"record_id": test["record_id"], "area_mm2": -np.ones(24)})
 
 
-def test_few_gearboxes_that_agree_get_no_limits_but_shares_exact_ones(dataset: Any, tmp_path: Path) -> None:
+def test_few_gearboxes_get_limits_unless_they_agree_and_shares_exact_ones(dataset: Any, tmp_path: Path) -> None:
     """Resamples of four gearboxes that are all as wrong have no width; four that are all right still may be luck."""
     own, few = labels_of(dataset, "validation"), dataset.labels("validation", ["damaged_area_mm2", "state"])
     truth = np.array(few["damaged_area_mm2"].to_pylist())
@@ -178,6 +178,11 @@ def test_few_gearboxes_that_agree_get_no_limits_but_shares_exact_ones(dataset: A
     assert np.isnan(row(found, AREA, "all").score.low)
     assert row(found, "AUC", "severe").score.low == pytest.approx(0.025 ** (1 / 4))
     assert "4 gearboxes: too few to tell classifiers apart; that takes 6" in str(found)
+    assert "is not told from chance" in found.verdict
+    apart = {"record_id": own["record_id"], "area_mm2": truth + np.repeat([1.0, 2.0, 3.0, 4.0], truth.size // 4)}
+    differing = row(diagnostics.score(dataset, apart, split="validation"), AREA, "all").score
+    assert differing.value == pytest.approx(2.5)
+    assert 1.0 <= differing.low < 2.5 < differing.high <= 4.0
 
 
 def test_risk_is_counted_over_all_that_are_as_sure(dataset: Any) -> None:
