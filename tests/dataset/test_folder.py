@@ -9,8 +9,7 @@ import pytest
 from siggen.dataset.folder import content_of
 from siggen.dataset.storage import LocalFolder
 from siggen.errors import DatasetError
-from siggen.file_writing import LEFTOVER_SUFFIX
-from siggen.gearbox.design import SetDesign, stored_design
+from siggen.gearbox.design import SetDesign
 from tests.dataset.fake_set import copy_fake_set, fake_config, file_bytes, write_fake_set
 
 CONFIG = fake_config()
@@ -18,22 +17,6 @@ CONFIG = fake_config()
 
 def is_finished(storage: LocalFolder, design: SetDesign) -> bool:
     return content_of(storage, design).finished is not None
-
-
-def test_config_yaml_is_the_same_configuration_again() -> None:
-    stored = stored_design(CONFIG.text.encode(), "config.yaml")
-    assert stored == CONFIG
-    assert stored.identity == CONFIG.identity
-    assert stored.text == CONFIG.text
-
-
-def test_new_empty_and_begun_folders_are_not_finished(tmp_path: Path) -> None:
-    assert not is_finished(LocalFolder(tmp_path / "new"), CONFIG)
-    assert not is_finished(LocalFolder(tmp_path), CONFIG)
-    (tmp_path / f".config.yaml.0123abcd{LEFTOVER_SUFFIX}").write_bytes(b"half")
-    assert not is_finished(LocalFolder(tmp_path), CONFIG)
-    (tmp_path / "config.yaml").write_bytes(CONFIG.text.encode())
-    assert not is_finished(LocalFolder(tmp_path), CONFIG)
 
 
 def test_a_set_with_a_missing_or_truncated_file_is_not_finished(tmp_path: Path) -> None:

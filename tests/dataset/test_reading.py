@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pytest
-import yaml
 
 from siggen.columns.record import signal_matrix
 from siggen.dataset import reading
@@ -34,15 +33,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def dataset(folder: Path) -> Dataset:
     return open_set(folder)
-
-
-def test_a_set_tells_what_it_is(dataset: Dataset, folder: Path) -> None:
-    assert dataset.splits == ("train", "validation", "test")
-    assert [channel.name for channel in dataset.channels] == ["bearing_vertical", "bearing_horizontal"]
-    assert (dataset.fs_hz, dataset.duration_s) == (5120.0, 0.1)
-    assert dataset.config == yaml.safe_load((folder / "config.yaml").read_text())
-    assert dataset.manifest["identity"] == CONFIG.identity
-    assert "train: 18" in repr(dataset)
 
 
 def test_every_record_is_read_back_bit_for_bit(dataset: Dataset) -> None:
@@ -130,20 +120,6 @@ def test_a_failed_record_is_answered_with_its_reason(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"record 8 could not be simulated: diverged \(motion left the backlash\)"):
         dataset.record(8)
     assert 8 not in dataset.labels()["record_id"].to_pylist()
-
-
-def test_a_set_without_its_manifest_is_not_opened(tmp_path: Path) -> None:
-    copy_fake_set(tmp_path)
-    (tmp_path / "manifest.json").unlink()
-    with pytest.raises(DatasetError, match="not finished"):
-        open_set(tmp_path)
-
-
-def test_a_missing_shard_is_named(tmp_path: Path) -> None:
-    copy_fake_set(tmp_path)
-    (tmp_path / "data/test-00000.parquet").unlink()
-    with pytest.raises(DatasetError, match=r"test-00000\.parquet is missing"):
-        list(open_set(tmp_path).records("test"))
 
 
 def test_reading_loads_neither_physics_nor_the_configuration_model(folder: Path) -> None:

@@ -5,19 +5,16 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 import siggen
 from siggen.cli.app import app
-from siggen.columns.versions import SCHEMA_VERSION, SIMULATION_VERSION
+from siggen.columns.versions import SIMULATION_VERSION
 from siggen.dataset.seal import sealed, unsealed
 from siggen.errors import DatasetError
 from siggen.sets.verification import verify
 from tests.dataset.fake_set import copy_fake_set, write_fake_set
-
-NEW_LABEL = "mesh_stiffness_loss_as_simulated"
 
 
 def say(folder: Path, **facts: object) -> None:
@@ -35,15 +32,6 @@ def test_a_set_of_another_version_is_refused_in_words_by_whatever_reads_it(tmp_p
             reads(tmp_path)
 
 
-def test_a_finished_set_of_a_newer_version_is_not_made_again(tmp_path: Path) -> None:
-    copy_fake_set(tmp_path)
-    say(tmp_path, schema_version="99")
-    before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.*")}
-    with pytest.raises(DatasetError, match="received schema version 99"):
-        write_fake_set(tmp_path)
-    assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.*") if path in before} == before
-
-
 def test_records_of_another_simulation_are_not_simulated_again_and_that_is_said(tmp_path: Path) -> None:
     copy_fake_set(tmp_path)
     other = SIMULATION_VERSION + 1
@@ -55,10 +43,3 @@ def test_records_of_another_simulation_are_not_simulated_again_and_that_is_said(
     found = json.loads(CliRunner().invoke(app, ["verify", str(tmp_path), "--json"]).stdout)
     assert found["records"] == []
     assert found["ok"]
-
-
-def test_a_new_set_says_which_simulation_made_it(tmp_path: Path) -> None:
-    copy_fake_set(tmp_path)
-    manifest = siggen.open(tmp_path).manifest
-    assert (manifest["schema_version"], manifest["simulation_version"]) == (SCHEMA_VERSION, SIMULATION_VERSION)
-    assert np.isfinite(siggen.open(tmp_path).labels(columns=[NEW_LABEL])[NEW_LABEL].to_numpy()).all()

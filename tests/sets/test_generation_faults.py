@@ -12,7 +12,6 @@ from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 from unittest.mock import patch
 
-import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -72,24 +71,6 @@ def test_after_sigkill_the_same_command_gives_the_bytes_of_an_undisturbed_run(
     assert not (tmp_path / "manifest.json").exists()
     again = write_fake_set(tmp_path)
     assert again.shards_taken_over == kept
-    assert_complete(tmp_path, reference)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(8))
-def test_killing_again_and_again_at_random_moments_changes_nothing(
-    tmp_path: Path, reference: dict[str, bytes], seed: int
-) -> None:
-    rng = np.random.default_rng(seed)
-    for _ in range(12):
-        process = start(tmp_path)
-        wait_for((tmp_path / "config.yaml").exists, process)
-        time.sleep(rng.uniform(0.0, 2.5))
-        process.kill()
-        process.communicate()
-        if (tmp_path / "manifest.json").exists():
-            break
-    write_fake_set(tmp_path, workers=1)
     assert_complete(tmp_path, reference)
 
 

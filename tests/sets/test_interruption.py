@@ -31,11 +31,6 @@ def test_the_first_signal_raises_and_later_ones_do_not_disturb_the_cleanup(numbe
     assert signal.getsignal(number) == before
 
 
-def test_without_a_signal_nothing_happens() -> None:
-    with Interruption() as interruption:
-        assert interruption.check() is None
-
-
 def test_other_threads_leave_signals_alone() -> None:
     before = signal.getsignal(signal.SIGTERM)
     found = []

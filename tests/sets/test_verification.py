@@ -72,14 +72,6 @@ def test_a_flipped_bit_anywhere_in_any_file_is_found(folder: Path, name: str) ->
     assert verify(folder).mismatches == ()
 
 
-@pytest.mark.parametrize("name", FAKE_FILES)
-def test_the_command_ends_with_4_after_a_flipped_byte_in_any_file(folder: Path, name: str) -> None:
-    flip(folder / name, (folder / name).stat().st_size // 2, 0)
-    result = CliRunner().invoke(app, ["verify", str(folder)])
-    assert result.exit_code == EXIT_MISMATCH
-    assert name in result.stderr
-
-
 @pytest.mark.parametrize("damage", ["flipped", "cut", "missing"])
 @pytest.mark.parametrize("name", [*FAKE_FILES, "data/train-00009.parquet"])
 def test_the_printed_commands_repair_a_set(folder: Path, reference: Path, name: str, damage: str) -> None:
@@ -93,6 +85,8 @@ def test_the_printed_commands_repair_a_set(folder: Path, reference: Path, name: 
     else:
         path.unlink()
     said = CliRunner().invoke(app, ["verify", str(folder)])
+    assert said.exit_code == EXIT_MISMATCH
+    assert name in said.stderr
     source = folder.parent / "source.yaml"
     source.write_bytes((reference / "config.yaml").read_bytes())
     for line in said.stderr.splitlines():
@@ -106,15 +100,6 @@ def test_the_printed_commands_repair_a_set(folder: Path, reference: Path, name: 
             assert made.exit_code == 0, made.stderr
     assert CliRunner().invoke(app, ["verify", str(folder), "--sample", "0"]).exit_code == 0
     assert file_bytes(folder) == file_bytes(reference)
-
-
-@pytest.mark.parametrize("name", [name for name in FAKE_FILES if name != "manifest.json"])
-def test_missing_and_truncated_files_are_found(folder: Path, name: str) -> None:
-    path = folder / name
-    path.write_bytes(path.read_bytes()[:-1])
-    assert [m.what for m in verify(folder).mismatches] == [name]
-    path.unlink()
-    assert [(m.what, m.problem) for m in verify(folder).mismatches] == [(name, "missing")]
 
 
 @pytest.mark.parametrize("name", ["data/train-00003.parquet", "internals/notes.txt", "life/old/units.parquet"])
