@@ -50,6 +50,20 @@ def state_notes(gearbox: PossibleGearbox) -> Iterator[str]:
             yield f"state {state.name}: fault {state.fault} is a word of your own{near}"
 
 
+def oil_notes(gearbox: PossibleGearbox) -> Iterator[str]:
+    """Yield that a temperature of oil acts on nothing."""
+    dynamics = gearbox.config.dynamics
+    if (
+        dynamics.friction.oil_temperature_c is not None
+        and dynamics.rubbing != "mixed_ehl"
+        and not gearbox.config.background
+    ):
+        yield (
+            f"dynamics.friction.oil_temperature_c acts on no record: friction is {dynamics.rubbing}, and there is no "
+            "background. Friction mixed_ehl asks for oil"
+        )
+
+
 def damage_notes(gearbox: PossibleGearbox) -> Iterator[str]:
     """Yield what to know about the shapes of damage in a set.
 

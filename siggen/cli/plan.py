@@ -194,6 +194,7 @@ def _notes(design: SetDesign) -> dict[str, Any]:
     """Return how it varies, and what a user should know about it, in words."""
     from siggen.checks.notes import (
         damage_notes,
+        oil_notes,
         reversal_notes,
         shaft_notes,
         size_notes,
@@ -210,7 +211,7 @@ def _notes(design: SetDesign) -> dict[str, Any]:
         "variation": [*variation_notes(gearbox)],
         "torque_notes": [*torque_notes(gearbox), *_of_every_pair(gearbox, reversal_notes)],
         "damage_notes": _of_every_pair(gearbox, damage_notes),
-        "state_notes": [*state_notes(gearbox)],
+        "state_notes": [*state_notes(gearbox), *oil_notes(gearbox)],
         "shaft_notes": _of_every_pair(gearbox, shaft_notes),
     }
     return {"manufacture": _manufacture(design.config), **notes, "implausible": implausible(gearbox)}

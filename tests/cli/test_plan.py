@@ -100,6 +100,13 @@ def test_a_large_set_is_planned_quickly(path):
     assert summary["shards_of_split"]["train"] == -(-300_000 // summary["specimens_per_full_shard"])
 
 
+def test_a_temperature_of_oil_that_acts_on_nothing_is_told(path):
+    friction = ["--set", "dynamics.friction.oil_temperature_c=60", "--trial", "0"]
+    for model, told in (("off", 1), ("mixed_ehl", 0)):
+        said = json.loads(run("plan", path, *friction, "--set", f"dynamics.friction.model={model}", "--json"))
+        assert sum("oil_temperature_c acts on no record" in note for note in said["state_notes"]) == told
+
+
 def test_the_plan_says_what_varies_within_a_record(path):
     varying = [
         "variation.speed.start_ratio=0.5",
