@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 import time
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
 
@@ -37,6 +37,19 @@ def test_a_raising_task_is_named_with_its_traceback(workers: Workers) -> None:
         dict(results(workers, tasks.fail_at_three, range(6)))
     with pytest.raises(EngineError, match=r"^0 raised MemoryError: ran out of memory; what is finished stays"):
         dict(results(workers, tasks.no_memory, [0]))
+
+
+def test_a_fork_server_that_dies_while_it_copies_itself_is_a_worker_that_died(monkeypatch: pytest.MonkeyPatch) -> None:
+    real, said = ProcessPoolExecutor.submit, list[str]()
+
+    def dies_first(pool: ProcessPoolExecutor, *given: object) -> object:
+        if not said:
+            raise EOFError("unexpected EOF")  # what multiprocessing says then
+        return real(pool, *given)
+
+    monkeypatch.setattr(ProcessPoolExecutor, "submit", dies_first)
+    assert dict(results(workers_of(None, 1), tasks.square, range(3), said.append)) == {0: 0, 1: 1, 2: 4}
+    assert [one.partition(";")[0] for one in said] == ["a worker died (a worker could not be started: unexpected EOF)"]
 
 
 class Counting(ThreadPoolExecutor):
