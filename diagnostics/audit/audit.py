@@ -55,6 +55,8 @@ class Audit:
         Where the user gave recordings.
     shams : tuple of ShamFound
         What attackers tell of states in whose damage nothing is removed.
+    missing : str
+        `healthy` or `damaged` where the set has no such records.
     """
 
     findings: tuple[Finding, ...]
@@ -71,6 +73,7 @@ class Audit:
     chance: ChanceLimit | None = None
     reference: ReferenceComparison | None = None
     shams: tuple[ShamFound, ...] = ()
+    missing: str = ""
 
     def on_sham(self, attacker: str) -> float:
         """Return the AUC that an attacker reaches on a sham; NaN where it was not asked.
@@ -88,8 +91,8 @@ class Audit:
 
     @property
     def tells_too_little(self) -> bool:
-        """Whether the gearboxes are too few for a set without traps to have passed."""
-        return self.specimens < FEWEST_SPECIMENS or self.gearboxes_needed is not None
+        """Whether gearboxes are too few, or one class is missing, for a set without traps to have passed."""
+        return bool(self.missing) or self.specimens < FEWEST_SPECIMENS or self.gearboxes_needed is not None
 
     def probes(self, state: str) -> dict[str, float]:
         """Return the AUC on unseen gearboxes of everything that looked for a state, by its name."""

@@ -188,9 +188,10 @@ def audit_set(
         with stage("windows of healthy records", int(measured.checksums.shape[0])) as advance:
             beside = reference_comparison(real, synthetic_windows(dataset, advance), seed)
     specimens = int(np.unique(measured.labels["specimen_id"]).size)
+    missing = "damaged" if measured.healthy.all() else "" if measured.healthy.any() else "healthy"
     return Audit(
         findings=tuple(findings),
-        verdict=verdict(findings, specimens, chance),
+        verdict=verdict(findings, specimens, chance, missing),
         realism=compared,
         detections=found,
         notes=tuple(_notes(measured, found, names_of(dataset)[0].planetary)),
@@ -203,6 +204,7 @@ def audit_set(
         chance=chance,
         reference=beside,
         shams=shams,
+        missing=missing,
     )
 
 

@@ -665,8 +665,16 @@ def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]
     ]
 
 
-def verdict(findings: Sequence[Finding], specimens: int, chance: ChanceLimit | None = None) -> str:
-    """Return what the findings mean for scores on a set of so many specimens, beside what chance reaches there."""
+def verdict(findings: Sequence[Finding], specimens: int, chance: ChanceLimit | None = None, missing: str = "") -> str:
+    """Return what the findings mean for scores on a set of so many specimens, beside what chance reaches there.
+
+    `missing` says which records the set has none of, `healthy` or `damaged`.
+    """
+    if not findings and missing:
+        return (
+            f"No verdict: the set has no {missing} records, so nothing can be told apart. Add such a state under "
+            "`states` in its configuration."
+        )
     if not findings and specimens < FEWEST_SPECIMENS:
         return (
             f"No trap was found. Few traps can be found with {counted(specimens, 'gearbox')}. Scores on this set say "

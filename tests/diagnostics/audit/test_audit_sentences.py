@@ -74,6 +74,8 @@ def test_one_gearbox_is_said_to_be_too_few() -> None:
     assert "1\xa0gearbox" in verdict([], 1)
     assert "2\xa0gearboxes" in verdict([], 2)
     assert "As far as the audit can see" in verdict([], 4)
+    assert verdict([], 24, missing="damaged").startswith("No verdict: the set has no damaged records")
+    assert replace(AUDIT, specimens=24, missing="damaged").tells_too_little
 
 
 def test_where_chance_reaches_what_a_trap_is_accused_of_nothing_is_said_to_be_found() -> None:
