@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
-from numba.core.typing.templates import signature
 from numba.extending import intrinsic
 
 from siggen.arrays import FloatArray
+from siggen.compiled import njit
 from siggen.lanes.kinds import (
     DOUBLE,
     DOUBLES,
@@ -32,6 +32,7 @@ from siggen.lanes.kinds import (
     Wholes,
     as_lanes,
     joined_kind,
+    spread,
 )
 
 
@@ -157,6 +158,45 @@ def gather_pairs(call: _Call) -> Any:
     return call.context.make_tuple(builder, call.signature.return_type, (low, high))
 
 
+def _between_kinds(array: Any, low: Any, high: Any, share: Any) -> Any:
+    return types.UniTuple(share, LANES)(array, low, high, share)
+
+
+@_lowered("array low high share", _between_kinds)
+def gather_between(call: _Call) -> Any:
+    """Return eight values, each linear between that behind one place of an array and that behind another one."""
+    builder = call.builder
+
+    def row(low: Any, high: Any, share: Any) -> Any:
+        a, b = (
+            builder.load(builder.bitcast(call.address(at), DOUBLES.vector.as_pointer()), align=8) for at in (low, high)
+        )
+        return builder.fadd(a, builder.fmul(spread(builder, share, DOUBLES.vector), builder.fsub(b, a)))
+
+    if not isinstance(call.signature.args[1], LanesType):
+        values = row(*call.args[1:])
+        parts = [builder.extract_element(values, INT32(lane)) for lane in range(LANES)]
+    else:
+        parts = _transposed(
+            builder, [row(*(builder.extract_element(a, INT32(lane)) for a in call.args[1:])) for lane in range(LANES)]
+        )
+    return call.context.make_tuple(builder, call.signature.return_type, parts)
+
+
+def _transposed(builder: Any, rows: list[Any]) -> list[Any]:
+    """Return the columns of eight rows of eight."""
+    lows, highs = [0, 8, 2, 10, 4, 12, 6, 14], [1, 9, 3, 11, 5, 13, 7, 15]
+    first, second = [0, 1, 4, 5, 8, 9, 12, 13], [2, 3, 6, 7, 10, 11, 14, 15]  # every other pair of lanes
+    columns: list[Any] = [None] * LANES
+    for odd, lanes in enumerate((lows, highs)):
+        twos = [_shuffled(builder, rows[r], rows[r + 1], lanes) for r in range(0, LANES, 2)]
+        for behind, chosen in enumerate((first, second)):
+            fours = [_shuffled(builder, twos[t], twos[t + 1], chosen) for t in (0, 2)]
+            for far, last in enumerate((first, second)):
+                columns[4 * far + 2 * behind + odd] = _shuffled(builder, fours[0], fours[1], last)
+    return columns
+
+
 def _shuffled(builder: Any, left: Any, right: Any, lanes: list[int]) -> Any:
     return builder.shuffle_vector(left, right, ir.Constant(ir.VectorType(INT32, len(lanes)), lanes))
 
@@ -244,45 +284,34 @@ def _as_bits(builder: Any, chosen: Any) -> Any:
     return builder.zext(builder.bitcast(chosen, ir.IntType(chosen.type.count)), INT64)
 
 
-def _lane_of(builder: Any, vector: Any, lane: Any) -> Any:
-    """Return where a lane of a vector in memory lies."""
-    return builder.gep(builder.bitcast(vector, DOUBLE.as_pointer()), [lane], inbounds=True)
+def _whole_like(value: Any) -> Any:
+    """Return the type of integers for a double or lanes of them."""
+    return ir.VectorType(INT64, value.type.count) if isinstance(value.type, ir.VectorType) else INT64
 
 
-def _called(function: Any) -> Any:
-    """Return a function of doubles that is called for every lane by itself, and only where chosen; 0 elsewhere."""
-
-    @_lowered("value chosen", lambda value, chosen: value(value, chosen))
-    def where_chosen(call: _Call) -> Any:
-        builder, (value, chosen) = call.builder, call.args
-        of_scalar = call.context.get_function(function, signature(types.float64, types.float64))
-        if not isinstance(value.type, ir.VectorType):
-            found = cgutils.alloca_once_value(builder, DOUBLE(0.0))
-            with builder.if_then(chosen):
-                builder.store(of_scalar(builder, (value,)), found)
-            return builder.load(found)
-        # In memory, lane after lane: vectors would be put aside around every call.
-        given = cgutils.alloca_once_value(builder, value)
-        found = cgutils.alloca_once_value(builder, ir.Constant(value.type, None))
-        left = cgutils.alloca_once_value(builder, _as_bits(builder, chosen))
-        again, body, behind = (builder.append_basic_block(name) for name in ("again", "lane", "behind"))
-        builder.branch(again)
-        builder.position_at_end(again)
-        mask = builder.load(left)
-        builder.cbranch(builder.icmp_unsigned("!=", mask, INT64(0)), body, behind)
-        builder.position_at_end(body)
-        lane = builder.cttz(mask, ir.IntType(1)(1))
-        one = builder.load(_lane_of(builder, given, lane))
-        builder.store(of_scalar(builder, (one,)), _lane_of(builder, found, lane))
-        builder.store(builder.and_(mask, builder.sub(mask, INT64(1))), left)
-        builder.branch(again)
-        builder.position_at_end(behind)
-        return builder.load(found)
-
-    return where_chosen
+def _everywhere(kind: Any, number: int) -> Any:
+    return kind([number] * kind.count) if isinstance(kind, ir.VectorType) else kind(number)
 
 
-logarithm, hyperbolic_tangent = _called(math.log), _called(math.tanh)
+@_lowered("value", lambda value: types.UniTuple(value, 2)(value))
+def mantissa_and_exponent(call: _Call) -> Any:
+    """Return m in [1, 2) and a whole e of m 2^e for normal positive doubles."""
+    builder, (value,) = call.builder, call.args
+    kind = _whole_like(value)
+    whole = builder.bitcast(value, kind)
+    exponent = builder.sub(builder.lshr(whole, _everywhere(kind, 52)), _everywhere(kind, 1023))
+    mantissa = builder.or_(builder.and_(whole, _everywhere(kind, (1 << 52) - 1)), _everywhere(kind, 1023 << 52))
+    both = builder.bitcast(mantissa, value.type), builder.sitofp(exponent, value.type)
+    return call.context.make_tuple(builder, call.signature.return_type, both)
+
+
+@_lowered("exponent", lambda exponent: exponent(exponent))
+def power_of_two(call: _Call) -> Any:
+    """Return 2^e of doubles that are whole, from -1022 to 1023."""
+    builder, (value,) = call.builder, call.args
+    kind = _whole_like(value)
+    biased = builder.add(builder.fptosi(value, kind), _everywhere(kind, 1023))
+    return builder.bitcast(builder.shl(biased, _everywhere(kind, 52)), value.type)
 
 
 @_lowered("value", lambda value: (Wholes(value.lanes) if isinstance(value, LanesType) else types.int64)(value))
@@ -304,6 +333,55 @@ def any_of(call: _Call) -> Any:
     if not isinstance(chosen.type, ir.VectorType):
         return chosen
     return builder.icmp_unsigned("!=", _as_bits(builder, chosen), INT64(0))
+
+
+# Logarithm and hyperbolic tangent of lanes at once; both within two units of the last place, and with the same bytes
+# on every machine, which those of a system's library have not. Methods and coefficients: fdlibm (Sun Microsystems
+# 1993), `e_log.c` and `e_exp.c`.
+
+SQRT_2, LOG2_E = math.sqrt(2.0), math.log2(math.e)
+STRAIGHT = 20.0
+"""tanh is 1 beyond."""
+LOG_2_HIGH, LOG_2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10
+"""Their sum is ln 2; the first has zeros behind, so that its product with an exponent is exact."""
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def logarithm(value: Any) -> Any:
+    """Return the natural logarithm of normal positive doubles."""
+    mantissa, exponent = mantissa_and_exponent(value)
+    upper = mantissa > SQRT_2
+    f = select(upper, 0.5 * mantissa, mantissa) - 1.0
+    exponent = select(upper, exponent + 1.0, exponent)
+    s = f / (2.0 + f)
+    z = s * s
+    w = z * z
+    odd = z * (6.666666666666735130e-01 + w * (2.857142874366239149e-01 + w * (
+        1.818357216161805012e-01 + w * 1.479819860511658591e-01)))  # fmt: skip
+    even = w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01))
+    half = 0.5 * f * f
+    return exponent * LOG_2_HIGH - ((half - (s * (half + (odd + even)) + exponent * LOG_2_LOW)) - f)
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _exponential(value: Any) -> Any:
+    """Return e^x for x from 0 to 700."""
+    exponent = as_doubles(truncated(value * LOG2_E + 0.5))
+    high, low = value - exponent * LOG_2_HIGH, exponent * LOG_2_LOW
+    x = high - low
+    t = x * x
+    c = x - t * (1.66666666666666019037e-01 + t * (-2.77777777770155933842e-03 + t * (
+        6.61375632143793436117e-05 + t * (-1.65339022054652515390e-06 + t * 4.13813679705723846039e-08))))  # fmt: skip
+    return (1.0 - ((low - x * c / (2.0 - c)) - high)) * power_of_two(exponent)
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def hyperbolic_tangent(value: Any) -> Any:
+    """Return tanh, within 3e-16 of its true value."""
+    sign, size = select(value < 0.0, -1.0, 1.0), smaller(magnitude(value), STRAIGHT)
+    if any_of(size < STRAIGHT):
+        return sign * (1.0 - 2.0 / (_exponential(2.0 * size) + 1.0))
+    return sign
 
 
 @_lowered("chosen", types.int64)

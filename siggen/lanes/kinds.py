@@ -60,7 +60,7 @@ class _Model(models.PrimitiveModel):
 DOUBLES, WHOLES, TRUTHS = Doubles(LANES), Wholes(LANES), Truths(LANES)
 
 
-def _spread(builder: Any, value: Any, vector: Any) -> Any:
+def spread(builder: Any, value: Any, vector: Any) -> Any:
     """Return a vector with the scalar in all lanes."""
     first = builder.insert_element(ir.Constant(vector, ir.Undefined), value, ir.Constant(INT32, 0))
     zeros = ir.Constant(ir.VectorType(INT32, vector.count), [0] * vector.count)
@@ -73,7 +73,7 @@ def as_lanes(context: Any, builder: Any, value: Any, given: Any, wanted: Any) ->
         return value
     if not isinstance(wanted, LanesType):
         return context.cast(builder, value, given, wanted)
-    return _spread(builder, context.cast(builder, value, given, wanted.scalar), wanted.vector)
+    return spread(builder, context.cast(builder, value, given, wanted.scalar), wanted.vector)
 
 
 def joined_kind(args: tuple[Any, ...]) -> Any:

@@ -20,7 +20,7 @@ import numpy as np
 from siggen.arrays import FloatArray
 from siggen.compiled import entry, njit
 from siggen.gears.gear_pair import GearPair
-from siggen.lanes import Choice, Lanes, Whole, as_doubles, gather_pairs, larger, logarithm, smaller, truncated
+from siggen.lanes import Lanes, Whole, as_doubles, gather_pairs, larger, logarithm, smaller, truncated
 from siggen.mesh.lubrication import (
     LOAD_FLOOR,
     LubricatedMesh,
@@ -144,21 +144,21 @@ def mixed_contact(table: AsperityTable, layer: int, position_m: float, force_n: 
     grid = LoadGrid(
         positions, loads, table.line_m, table.start_m, table.per_m, table.floor_n_per_m, table.per_log
     )  # fmt: skip
-    corner, a, b = contact_cell(grid, position_m, force_n, True)
+    corner, a, b = contact_cell(grid, position_m, force_n)
     share = cell_value(table.share[layer].reshape(-1), corner, loads, a, b)
     return share, cell_value(table.fluid.reshape(-1), corner, loads, a, b)
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def contact_cell(grid: LoadGrid, position_m: Lanes, force_n: Lanes, chosen: Choice) -> tuple[Whole, Lanes, Lanes]:
+def contact_cell(grid: LoadGrid, position_m: Lanes, force_n: Lanes) -> tuple[Whole, Lanes, Lanes]:
     """Return the cell of a position and a force in a table in row order, and the weights of its upper ends.
 
-    Clamped to the table; numbers or lanes, of use where chosen.
+    Clamped to the table; numbers or lanes.
     """
     along = smaller(larger((position_m - grid.start_m) * grid.per_m, 0.0), grid.positions - 1.0)
     held = grid.start_m + along / grid.per_m
     load = force_n * grid.line_m / (grid.floor_n_per_m * held * (grid.line_m - held))
-    up = smaller(logarithm(larger(load, 1.0), chosen) * grid.per_log, grid.loads - 1.0)
+    up = smaller(logarithm(larger(load, 1.0)) * grid.per_log, grid.loads - 1.0)
     i, j = smaller(truncated(along), grid.positions - 2), smaller(truncated(up), grid.loads - 2)
     return i * grid.loads + j, along - as_doubles(i), up - as_doubles(j)
 

@@ -1,9 +1,10 @@
 """The pair law of two slots at three nodes in lanes: all forces at the nodes of one step.
 
-What `write_node_forces` writes, with the same bytes, since places, springs and loads are the same code; only springs
-are taken one after the other. It stays the way of all laws and steps that lanes do not take: these take contacts across
-the face, while the same pairs are in reach at all nodes and no back flank comes near. What passes from one
-step to the next stands in the table of pairs, so that both ways may follow each other.
+What `write_node_forces` writes, since places, springs and loads are the same code: with the same bytes, but where pairs
+share a gear body, which both settle within `SMOOTH_CHANGE` from another guess. That stays the way of all laws and steps
+that lanes do not take: these take contacts across the face, while the same pairs are in reach at all nodes and no back
+flank comes near. What passes from one step to the next stands in the table of pairs, so that both ways may follow each
+other.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ from siggen.lanes import (
     any_of,
     bits,
     extract,
+    insert,
+    larger,
     load,
     magnitude,
     select,
@@ -49,7 +52,16 @@ from siggen.mesh.pair_columns import (
 )
 from siggen.mesh.pair_law import PairLaw
 from siggen.mesh.pair_springs import Engaged, between, damped, engage, engaged, placed, placed_contact, rubbed
-from siggen.mesh.springs import NO_SPRING, SMOOTH_CHANGE, Before, PairPlace, Spring, alone_spring, two_springs
+from siggen.mesh.springs import (
+    EXACT_CHANGE,
+    MOST_STEPS,
+    SMOOTH_CHANGE,
+    Before,
+    PairPlace,
+    Spring,
+    contact_spring,
+    settled_spring,
+)
 
 # The pair law of two slots at three nodes in lanes, first part: the table of it, and where its pairs are.
 #
@@ -59,6 +71,7 @@ from siggen.mesh.springs import NO_SPRING, SMOOTH_CHANGE, Before, PairPlace, Spr
 _row = count()
 APPLIES = next(_row)  # whether lanes can be used at all
 NODES_AT = next(_row)  # on [0, 1]
+SLOT_AT = next(_row)  # of the pair in each lane
 PAIR = next(_row)  # number of the pair; this and the next five stay while it is engaged (`pair_places.Engaged`)
 TOUCH_AT = next(_row)
 COLUMNS_AT = next(_row)
@@ -98,6 +111,7 @@ def lane_table(law: PairLaw, nodes: FloatArray) -> FloatArray:
     applies = plain and law.slots == SLOTS and len(nodes) == 3 and head[layout.CONTACT_NODES] > 0
     table[APPLIES] = float(applies and bool((stiffness > 0.0).all()))
     table[NODES_AT, : len(nodes)] = nodes
+    table[SLOT_AT] = np.arange(LANES) % SLOTS
     table[PAIR] = -1e9  # no pair yet, and a place that is a number
     return table
 
@@ -136,6 +150,7 @@ def place_lanes(law: PairLaw, pitches: Lanes, approach: Lanes, table: FloatArray
 NOT_HERE = -1000
 """Returned where lanes do not take a step, and nothing was written that matters."""
 _of_slot_0, _of_slot_1 = shuffle(0, 0, 2, 2, 4, 4, 6, 6), shuffle(1, 1, 3, 3, 5, 5, 7, 7)
+_of_other_slot, _of_nodes = shuffle(1, 0, 3, 2, 5, 4, 7, 6), shuffle(0, 1, 0, 1, 0, 1, 0, 1)
 _at_nodes = shuffle(0, 2, 4, 6, 0, 2, 4, 6)
 
 
@@ -169,9 +184,10 @@ def write_lane_forces(
     behind = (depth <= 0.0) & (2.0 * placed - depth < -scalars[layout.BACKLASH_M])
     if bits(behind) & inside != 0:
         return NOT_HERE
-    if law.scalars[layout.CONTACT_HALF_FACE] > 0.0:  # how far one end of the face is ahead
-        depth = depth + magnitude(of_pairs(load(node, NODE_TILT * LANES))) * law.scalars[layout.CONTACT_HALF_FACE]
-    _write_springs(law, pairs, table, node, bits(depth > 0.0) & inside, inside, pair)
+    tilt = of_pairs(load(node, NODE_TILT * LANES))
+    here = (load(table, SLOT_AT * LANES) == float(slot)) | (splat(1.0 if older else 0.0) > 0.0)
+    ahead = magnitude(tilt) * law.scalars[layout.CONTACT_HALF_FACE]  # how far one end of the face is
+    _write_springs(law, pairs, table, tilt, here & (depth + ahead > 0.0), here, pair)
     for s in range(SLOTS):
         pairs[4 + s, columns.SPRUNG], pairs[4 + s, columns.STIFFNESS] = table[NORMAL, 4 + s], table[STIFFNESS, 4 + s]
     touching = _load(law, table, node)
@@ -189,54 +205,63 @@ def write_lane_forces(
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _write_springs(
-    law: PairLaw, pairs: FloatArray, table: FloatArray, node: FloatArray, near: int, inside: int, pair: int
+    law: PairLaw, pairs: FloatArray, table: FloatArray, tilt: Lanes, near: Choice, inside: Choice, pair: int
 ) -> None:
-    """Write the springs of all lanes; `near` are those that approach, by bits; `pair` is the later one."""
-    tilts, slot = law.places[layout.CONTACT_VALUES] > 4, pair % SLOTS
-    for i in range(0, 3 * SLOTS, SLOTS):
-        tilt = node[NODE_TILT, i // SLOTS] if tilts else 0.0
-        if law.places[layout.APART] == 0 or near >> i & 3 != 3:
-            for lane in (i, i + 1):
-                _write(table, lane, alone_spring(law, _place(table, lane), tilt) if inside >> lane & 1 else NO_SPRING)
-            continue
-        later, earlier = i + slot, i + 1 - slot
-        if i > 0:
-            before = _before(table, later), _before(table, earlier)
-        else:
-            before_j = _last(pairs, 5 - slot, pair - 1, table[DEPTH, earlier])
-            before = _last(pairs, 4 + slot, pair, table[DEPTH, later]), before_j
-        spring_i, spring_j, _ = two_springs(
-            law, table[COUPLING, later], tilt, SMOOTH_CHANGE, _place(table, later), _place(table, earlier), before
-        )
-        _write(table, later, spring_i)
-        _write(table, earlier, spring_j)
+    """Write the springs of all lanes; `near` are those that approach; `pair` is the later one."""
+    slot, depth = pair % SLOTS, load(table, DEPTH * LANES)
+    place = PairPlace(depth, load(table, TOUCH * LANES), load(table, CURVES * LANES), load(table, SHARE * LANES), 0.0)
+    c, both = splat(0.0), splat(0.0) > 0.0
+    if law.places[layout.APART] > 0:
+        shared, coming = load(table, COUPLING * LANES), select(near, 1.0, 0.0)
+        both = coming * _of_other_slot(coming) > 0.0
+        c = select(both, _of_slot_0(shared) if slot == 0 else _of_slot_1(shared), 0.0)
+    at, force, yielding = _two_springs(law, place, tilt, c, both, _last(pairs, slot, pair, depth))
+    found = settled_spring(at, force, depth - c * _of_other_slot(force), yielding)
+    for row, value, outside in (
+        (NORMAL, found.force, 0.0), (STIFFNESS, found.stiffness, 0.0), (YIELD, found.yielding, 0.0),
+        (MOMENT, found.moment, 0.0), (CROSS, found.cross, 0.0), (TURNING, found.turning, 0.0),
+        (CARRYING, found.carrying, 1.0), (ROUGH, found.rough, 0.0),
+    ):  # fmt: skip
+        store(table, row * LANES, select(inside, value, outside))
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _place(table: FloatArray, lane: int) -> PairPlace:
-    return PairPlace(table[DEPTH, lane], table[TOUCH, lane], table[CURVES, lane], table[SHARE, lane], 0.0)
+def _last(pairs: FloatArray, slot: int, pair: int, depth: Lanes) -> Before:
+    """Return the springs at the last node of the step before, zeros of other pairs."""
+    force, stiffness, alone = splat(0.0), splat(0.0), depth
+    for s in range(SLOTS):
+        i = 4 + s
+        if pairs[i, columns.PAIR] == (pair if s == slot else pair - 1):
+            force = insert(force, s, pairs[i, columns.SPRUNG])
+            stiffness = insert(stiffness, s, pairs[i, columns.STIFFNESS])
+            alone = insert(alone, s, pairs[i, columns.ALONE])
+    return Before(_of_nodes(force), _of_nodes(stiffness), depth - _of_nodes(alone))
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _write(table: FloatArray, lane: int, spring: Spring) -> None:
-    table[NORMAL, lane], table[STIFFNESS, lane], table[YIELD, lane] = spring.force, spring.stiffness, spring.yielding
-    table[MOMENT, lane], table[CROSS, lane], table[TURNING, lane] = spring.moment, spring.cross, spring.turning
-    table[CARRYING, lane], table[ROUGH, lane] = spring.carrying, spring.rough
+def _two_springs(
+    law: PairLaw, place: PairPlace, tilt: Lanes, c: Lanes, both: Choice, before: Before
+) -> tuple[Spring, Lanes, Lanes]:
+    """Return the last springs that were asked for, forces and stiffness to the approach, as `two_springs`.
 
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _before(table: FloatArray, lane: int) -> Before:
-    """Return the spring at the node before."""
-    before = lane - SLOTS
-    return Before(table[NORMAL, before], table[STIFFNESS, before], table[DEPTH, lane] - table[DEPTH, before])
-
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _last(pairs: FloatArray, i: int, pair: int, depth: float) -> Before:
-    """Return the same of the last node of the step before, zeros of another pair."""
-    if pairs[i, columns.PAIR] != pair:
-        return Before(0.0, 0.0, 0.0)
-    return Before(pairs[i, columns.SPRUNG], pairs[i, columns.STIFFNESS], depth - pairs[i, columns.ALONE])
+    Lanes that are not coupled have their own.
+    """
+    force, k, change = before
+    inverse = 1.0 / (1.0 - k * _of_other_slot(k) * c * c)
+    force = force + k * (change - c * _of_other_slot(k) * _of_other_slot(change)) * inverse
+    at = contact_spring(law, place, tilt, place.depth - c * _of_other_slot(force))
+    for step in range(MOST_STEPS):
+        k, other = at.stiffness, _of_other_slot(force)
+        inverse = 1.0 / (1.0 - k * _of_other_slot(k) * c * c)
+        change = (at.force - force - k * c * (_of_other_slot(at.force) - other)) * inverse
+        force = force + change
+        size = magnitude(force)
+        least = EXACT_CHANGE * larger(size, _of_other_slot(size))
+        left = select(both, select(magnitude(change) <= larger(SMOOTH_CHANGE * size, least), 0.0, 1.0), 0.0)
+        if step == MOST_STEPS - 1 or not any_of(left > 0.0):
+            break
+        at = contact_spring(law, place, tilt, place.depth - c * _of_other_slot(force))
+    return at, select(both, force, at.force), k * (1.0 - c * _of_other_slot(k)) * inverse
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)

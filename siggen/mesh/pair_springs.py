@@ -22,7 +22,6 @@ from siggen.lanes import (
     gather_pairs,
     hyperbolic_tangent,
     larger,
-    magnitude,
     select,
     smaller,
     truncated,
@@ -433,8 +432,6 @@ def _under_others(pairs: FloatArray, work: FloatArray, coupling: int, i: int) ->
 #
 # Equations: `pair_law`.
 
-STRAIGHT = 10.0
-"""tanh is 1 within 4e-9 beyond."""
 LEAST_CARRYING = 1e-3
 """Of the face, less than a slice: what a force is divided by where a motion that diverges leaves the table."""
 
@@ -486,7 +483,7 @@ def lubricated(law: PairLaw, position_m: Value, load_n: Value, rough: Value, cho
         positions, loads, scalars[layout.LUBRICATED_LINE], scalars[layout.LUBRICATED_START],
         scalars[layout.LUBRICATED_PER_M], scalars[layout.LUBRICATED_FLOOR], scalars[layout.LUBRICATED_PER_LOG],
     )  # fmt: skip
-    corner, a, b = contact_cell(grid, position_m, load_n, chosen)
+    corner, a, b = contact_cell(grid, position_m, load_n)
     share = cell_value(numbers, corner + index[layout.SHARE_AT], loads, a, b)
     if index[layout.ROUGHNESSES] > 1 and any_of(chosen & (rough > 0.0)):
         raised = cell_value(numbers, corner + (index[layout.SHARE_AT] + positions * loads), loads, a, b)
@@ -506,6 +503,4 @@ def rubbed(law: PairLaw, force_n: Value, position_m: Value, faces: tuple[Value, 
     load_n = select(rubs, force_n, 0.0) / larger(carrying, LEAST_CARRYING)
     share, coefficient = lubricated(law, position_m, load_n, rough, rubs)
     speed = sliding / law.scalars[layout.SLIP_SPEED]
-    turns = magnitude(speed) < STRAIGHT
-    way = select(turns, hyperbolic_tangent(speed, rubs & turns), select(speed < 0.0, -1.0, 1.0))
-    return Rubbed(coefficient * force_n * way, coefficient, share)
+    return Rubbed(coefficient * force_n * hyperbolic_tangent(speed), coefficient, share)

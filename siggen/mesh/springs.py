@@ -1,18 +1,35 @@
 """Spring of one pair from the table of the contact across the face, compiled: the narrow function of the time loop.
 
 Equations: `siggen.mesh.contact_table`. A monotone cubic in the approach at the two columns beside the
-position, linear between them; where gears tilt, `tilted_spring`. Numbers of one node stand side by side: all that the
-table says of a pair on a ray is read at once, eight of them.
+position, linear between them; where gears tilt, `tilted_answer`. Numbers of one node stand side by side: all that the
+table says of a pair on a ray is read at once, eight of them. Springs are numbers, or lanes of pairs.
 """
 
 from __future__ import annotations
 
-from math import sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from siggen.arrays import FloatArray
+from numba.extending import overload
+
 from siggen.compiled import entry, njit
-from siggen.lanes import Lanes, extract, load, shuffle
+from siggen.lanes import (
+    Choice,
+    Lanes,
+    Whole,
+    any_of,
+    as_doubles,
+    extract,
+    gather_between,
+    larger,
+    load,
+    magnitude,
+    select,
+    shuffle,
+    smaller,
+    square_root,
+    truncated,
+)
+from siggen.lanes.kinds import LanesType
 from siggen.mesh import pair_law as layout
 from siggen.mesh.contact_table import TILTING_VALUES
 from siggen.mesh.pair_law import PairLaw
@@ -32,17 +49,31 @@ _slopes = shuffle(1, 0, 3, 2, 5, 4, 7, 6)
 _FIRST, _SECOND, _THIRD, _LAST = HALF_RAYS[1:]
 LEAST_M = 1e-15
 """Radius below which nothing touches: far below an atom, and above where its square is no number."""
+Value = Lanes
+"""A number, or lanes of numbers."""
+
+
+_COMPILED: Any = {"_nrt": False, "error_model": "numpy", "forceinline": True}
+"""How numba compiles what depends on the kind of its values."""
 
 
 class RayPlace(NamedTuple):
     """Where two columns begin at a node, the share of the upper one, the way behind the node and to the next [m]."""
 
-    here: int
-    there: int
-    share: float
-    over: float
-    span: float
-    ahead: int
+    here: Whole
+    there: Whole
+    share: Value
+    over: Value
+    span: Value
+
+
+class Cubic(NamedTuple):
+    """Value, slope and second derivative of a cubic, and its integral from the node on."""
+
+    value: Value
+    slope: Value
+    bend: Value
+    area: Value
 
 
 class AlongRay(NamedTuple):
@@ -52,106 +83,129 @@ class AlongRay(NamedTuple):
     than at the node before; W of the ray without tilt at that node [J], of the rays beside it; W_rrr and T_rr.
     """
 
-    energy: float
-    radial: float
-    radial_slope: float
-    across: float
-    across_slope: float
-    across_bend: float
-    carrying: float
-    rough: float
-    turning: float
-    turning_slope: float
-    gained: float
-    beside: float
-    radial_bend: float
-    turning_bend: float
+    energy: Value
+    radial: Value
+    radial_slope: Value
+    across: Value
+    across_slope: Value
+    across_bend: Value
+    carrying: Value
+    rough: Value
+    turning: Value
+    turning_slope: Value
+    gained: Value
+    beside: Value
+    radial_bend: Value
+    turning_bend: Value
 
 
 class TiltedAnswer(NamedTuple):
     """Force [N], stiffness [N/m], moment [N m], dM/dd [N], dM/dθ [N m], shares of carrying and of damage."""
 
-    force: float
-    stiffness: float
-    moment: float
-    cross: float
-    turning: float
-    carrying: float
-    rough: float
-
-
-class _Energy(NamedTuple):
-    """W_r, W_p, W_rr, W_rp and W_pp."""
-
-    radial: float
-    across: float
-    radial_slope: float
-    mixed: float
-    across_bend: float
+    force: Value
+    stiffness: Value
+    moment: Value
+    cross: Value
+    turning: Value
+    carrying: Value
+    rough: Value
 
 
 NO_ANSWER = TiltedAnswer(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 
+class _Energy(NamedTuple):
+    """W_r, W_p, W_rr, W_rp and W_pp."""
+
+    radial: Value
+    across: Value
+    radial_slope: Value
+    mixed: Value
+    across_bend: Value
+
+
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def ray_before(p: float) -> int:
+def _ray_before(p: Value) -> Value:
     """Return the number of the last ray that does not lie beyond p, of those with one behind."""
-    size = abs(p)
-    beyond = (1 if size >= _FIRST else 0) + (1 if size >= _SECOND else 0) + (1 if size >= _THIRD else 0)
-    return UPRIGHT + beyond if p >= 0.0 else UPRIGHT - 1 - beyond
+    size = magnitude(p)
+    if not any_of(size >= _FIRST):
+        return select(size < _FIRST, float(UPRIGHT), 0.0)
+    beyond = select(size >= _FIRST, 1.0, 0.0) + select(size >= _SECOND, 1.0, 0.0) + select(size >= _THIRD, 1.0, 0.0)
+    return select(size < _FIRST, float(UPRIGHT), select(p >= 0.0, UPRIGHT + beyond, UPRIGHT - 1.0 - beyond))
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _ray(number: int) -> float:
+def _ray(number: Value) -> Value:
     """Return p of a ray."""
-    away = abs(number - UPRIGHT)
-    size = 0.0
-    if away == 1:
-        size = _FIRST
-    elif away == 2:
-        size = _SECOND
-    elif away == 3:
-        size = _THIRD
-    elif away == 4:
-        size = _LAST
-    return size if number >= UPRIGHT else -size
+    away = magnitude(number - UPRIGHT)
+    size = select(away >= 1.0, select(away >= 2.0, select(away >= 3.0, select(away >= 4.0, _LAST, _THIRD), _SECOND),
+        _FIRST), 0.0)  # fmt: skip
+    return select(number >= UPRIGHT, size, size * -1.0)
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _across(numbers: FloatArray, here: int, there: int, share: float) -> Lanes:
-    """Return eight values between two columns."""
-    low = load(numbers, here)
-    return low + share * (load(numbers, there) - low)
+def _cubic(place: RayPlace, low: Value, slope_low: Value, high: Value, slope_high: Value) -> Cubic:
+    """Return Hermite's cubic between two nodes; beyond the last one its slope stays."""
+    over, span = place.over, place.span
+    per_span, within = 1.0 / span, smaller(over, span)
+    rise, t, beyond = (high - low) * per_span, within / span, over - within
+    bend, twist = 3.0 * rise - 2.0 * slope_low - slope_high, slope_low + slope_high - 2.0 * rise
+    value = low + within * (slope_low + t * (bend + t * twist))
+    slope = slope_low + t * (2.0 * bend + 3.0 * t * twist)
+    second = (2.0 * bend + 6.0 * t * twist) * per_span
+    area = within * (low + within * (0.5 * slope_low + t * (bend / 3.0 + 0.25 * t * twist)))
+    area = area + beyond * (value + 0.5 * beyond * slope)
+    return Cubic(value + beyond * slope, slope, select(beyond > 0.0, 0.0, second), area)
 
 
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def along_ray(numbers: FloatArray, place: RayPlace, ray: int) -> AlongRay:
+def _along_ray(law: PairLaw, place: RayPlace, ray: Value) -> AlongRay:  # noqa: ARG001 - what compiled code calls
     """Return what stands along a ray at a radius; beyond the last node slopes stay."""
-    first = ray * TILTING_VALUES
-    low = _across(numbers, place.here + first, place.there + first, place.share)
-    high = _across(numbers, place.here + place.ahead + first, place.there + place.ahead + first, place.share)
-    s_0, s_1, over, span = _slopes(low), _slopes(high), place.over, place.span
-    rise = (high - low) * (1.0 / span)
-    bend, twist = 3.0 * rise - 2.0 * s_0 - s_1, s_0 + s_1 - 2.0 * rise
-    within = min(over, span)
-    t = within / span
-    value, slope = low + within * (s_0 + t * (bend + t * twist)), s_0 + t * (2.0 * bend + 3.0 * t * twist)
-    second = (2.0 * bend + 6.0 * t * twist) * (1.0 / span)
-    area = within * (low + within * (0.5 * s_0 + t * (bend / 3.0 + 0.25 * t * twist)))
-    shares, beyond = low + t * (high - low), over - within
-    gained = extract(area, 0)
-    if beyond > 0.0:
-        gained += beyond * (extract(value, 0) + 0.5 * beyond * extract(slope, 0))
-        value, second = value + beyond * slope, second * 0.0
+    raise TypeError("rays are read by compiled code")
+
+
+@overload(_along_ray, strict=False, jit_options=_COMPILED)
+def _along_ray_of(law: Any, place: Any, ray: Any) -> Any:  # noqa: ARG001 - names as those of the function
+    found = _of_lanes if isinstance(ray, LanesType) else _of_row
+    return lambda law, place, ray: found(law, place, ray)  # noqa: PLW0108 - numba takes no compiled function here
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _of_lanes(law: PairLaw, place: RayPlace, ray: Value) -> AlongRay:
+    first, numbers = truncated(ray * TILTING_VALUES), law.numbers
+    ahead = first + law.places[layout.CONTACT_VALUES]
+    low = gather_between(numbers, place.here + first, place.there + first, place.share)
+    high = gather_between(numbers, place.here + ahead, place.there + ahead, place.share)
+    radial = _cubic(place, low[0], low[1], high[0], high[1])
+    across = _cubic(place, low[4], low[5], high[4], high[5])
+    turning = _cubic(place, low[6], low[7], high[6], high[7])
+    t = smaller(place.over, place.span) / place.span
     return AlongRay(
-        extract(low, 6) + gained, extract(value, 0), extract(slope, 0), extract(value, 4), extract(slope, 4),
-        extract(second, 4), extract(shares, 2), extract(shares, 3), extract(value, 6), extract(slope, 6), gained,
-        extract(low, 7), extract(second, 0), extract(second, 6),
+        low[6] + radial.area, radial.value, radial.slope, across.value, across.slope, across.bend,
+        low[2] + t * (high[2] - low[2]), low[3] + t * (high[3] - low[3]), turning.value, turning.slope, radial.area,
+        low[7], radial.bend, turning.bend,
     )  # fmt: skip
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _beside(upright: AlongRay, energy: float, p: float, radius: float) -> tuple[AlongRay, float]:
+def _of_row(law: PairLaw, place: RayPlace, ray: Value) -> AlongRay:
+    # A number's eight values fill a register: one cubic does for all of them.
+    first, numbers, share = truncated(ray * TILTING_VALUES), law.numbers, place.share
+    ahead = first + law.places[layout.CONTACT_VALUES]
+    low, high = load(numbers, place.here + first), load(numbers, place.here + ahead)
+    low = low + share * (load(numbers, place.there + first) - low)
+    high = high + share * (load(numbers, place.there + ahead) - high)
+    cubic = _cubic(place, low, _slopes(low), high, _slopes(high))
+    shares = low + smaller(place.over, place.span) / place.span * (high - low)
+    value, slope, bend, area = cubic.value, cubic.slope, cubic.bend, extract(cubic.area, 0)
+    return AlongRay(
+        extract(low, 6) + area, extract(value, 0), extract(slope, 0), extract(value, 4), extract(slope, 4),
+        extract(bend, 4), extract(shares, 2), extract(shares, 3), extract(value, 6), extract(slope, 6), area,
+        extract(low, 7), extract(bend, 0), extract(bend, 6),
+    )  # fmt: skip
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _beside(upright: AlongRay, energy: Value, p: Value, radius: Value) -> tuple[AlongRay, Value]:
     """Return what stands at a small p beside the ray without tilt, to the second order, and W_pp.
 
     `energy` [J]: W without tilt at the node before.
@@ -175,10 +229,10 @@ def _beside(upright: AlongRay, energy: float, p: float, radius: float) -> tuple[
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _between(low: AlongRay, high: AlongRay, width: float, x: float) -> _Energy:
+def _between(low: AlongRay, high: AlongRay, width: Value, x: Value) -> _Energy:
     """Return the derivatives of Hermite's cubic in p between two rays, x of the width behind the first."""
     y = 1.0 - x
-    h_1, g_0, g_1 = x * x * (3.0 - 2.0 * x), width * x * y * y, -width * x * x * y
+    h_1, g_0, g_1 = x * x * (3.0 - 2.0 * x), width * x * y * y, width * x * x * y * -1.0
     d_1, e_0, e_1 = 6.0 * x * y / width, y * (1.0 - 3.0 * x), x * (3.0 * x - 2.0)
     c_1, b_0, b_1 = 6.0 * (1.0 - 2.0 * x) / (width * width), (6.0 * x - 4.0) / width, (6.0 * x - 2.0) / width
     risen, pushed = high.energy - low.energy, high.radial - low.radial
@@ -193,46 +247,58 @@ def _between(low: AlongRay, high: AlongRay, width: float, x: float) -> _Energy:
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def tilted_answer(
-    numbers: FloatArray, place: RayPlace, way: tuple[float, float, float], half_face: float
-) -> TiltedAnswer:
-    """Return force and moment with their derivatives.
+def _chosen_ray(chosen: Choice, left: AlongRay, right: AlongRay) -> AlongRay:
+    """Return the left one where chosen, of what `_between` asks for."""
+    return AlongRay(
+        select(chosen, left.energy, right.energy), select(chosen, left.radial, right.radial),
+        select(chosen, left.radial_slope, right.radial_slope), select(chosen, left.across, right.across),
+        select(chosen, left.across_slope, right.across_slope), select(chosen, left.across_bend, right.across_bend),
+        right.carrying, right.rough, right.turning, right.turning_slope, right.gained, right.beside,
+        right.radial_bend, right.turning_bend,
+    )  # fmt: skip
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def tilted_answer(law: PairLaw, place: RayPlace, way: tuple[Value, Value, Value], touches: Choice) -> TiltedAnswer:
+    """Return force and moment with their derivatives, of use where something touches.
 
     `way`: approach, lift of the ends and radius [m].
     """
     approach, lift, radius = way
+    half_face = law.scalars[layout.CONTACT_HALF_FACE]
     p = lift / (radius + approach)
-    size = abs(p)
-    ray = UPRIGHT if size < _FIRST else ray_before(p)
-    low = along_ray(numbers, place, ray)
+    ray = _ray_before(p)
+    low = _along_ray(law, place, ray)
     carrying, rough = low.carrying, low.rough
-    if size <= NEAR:
-        low, bent = _beside(low, 0.0, p, radius)  # of the energy only derivatives are asked for
-        found = _Energy(low.radial, low.across, low.radial_slope, low.across_slope, bent)
-    else:
-        behind, first = ray + 1, _ray(ray)
-        if ray == UPRIGHT:
-            behind, first = (ray + 1, NEAR) if p > 0.0 else (ray - 1, -NEAR)
-        high, width = along_ray(numbers, place, behind), _ray(behind) - first
-        if ray == UPRIGHT:
-            low, _ = _beside(low, high.beside, first, radius)
+    # Of the energy only derivatives are asked for.
+    beside, bent = _beside(low, 0.0, p, radius)
+    found = _Energy(beside.radial, beside.across, beside.radial_slope, beside.across_slope, bent)
+    far = touches & (magnitude(p) > NEAR)
+    if any_of(far):
+        upright, ahead = ray == UPRIGHT, select(p > 0.0, 1.0, -1.0)
+        behind = ray + select(upright, ahead, 1.0)
+        first = select(upright, ahead * NEAR, _ray(ray))
+        high, width = _along_ray(law, place, behind), _ray(behind) - first
+        edge, _ = _beside(low, high.beside, first, radius)
         x = (p - first) / width
-        found = _between(low, high, width, x)
-        carrying += x * (high.carrying - carrying)
-        rough += x * (high.rough - rough)
+        between = _between(_chosen_ray(upright, edge, low), high, width, x)
+        found = _Energy(
+            select(far, between.radial, found.radial), select(far, between.across, found.across),
+            select(far, between.radial_slope, found.radial_slope), select(far, between.mixed, found.mixed),
+            select(far, between.across_bend, found.across_bend),
+        )  # fmt: skip
+        carrying = select(far, carrying + x * (high.carrying - carrying), carrying)
+        rough = select(far, rough + x * (high.rough - rough), rough)
     cosine, sine, angle, inverse = approach / radius, lift / radius, 0.5 * (1.0 + p * p), 1.0 / radius
     turned = angle * found.across * inverse
     bend = angle * (angle * found.across_bend + p * found.across) * inverse * inverse
-    h_rr = max(found.radial_slope, 0.0)
-    h_pp = max(bend + found.radial * inverse, 0.0)
-    most = sqrt(h_rr * h_pp)
-    h_rp = min(max((angle * found.mixed - turned) * inverse, -most), most)
-    force = cosine * found.radial - sine * turned
-    if not force > 0.0:
-        return NO_ANSWER
+    h_rr = larger(found.radial_slope, 0.0)
+    h_pp = larger(bend + found.radial * inverse, 0.0)
+    most = square_root(h_rr * h_pp)
+    h_rp = smaller(larger((angle * found.mixed - turned) * inverse, most * -1.0), most)
     twice = 2.0 * cosine * sine * h_rp
     return TiltedAnswer(
-        force,
+        cosine * found.radial - sine * turned,
         cosine * cosine * h_rr - twice + sine * sine * h_pp,
         half_face * (sine * found.radial + cosine * turned),
         half_face * (cosine * sine * (h_rr - h_pp) + (cosine * cosine - sine * sine) * h_rp),
@@ -242,20 +308,17 @@ def tilted_answer(
     )
 
 
-_next_node = shuffle(4, 5, 6, 7, 4, 5, 6, 7)
-
-
 class PairPlace(NamedTuple):
     """Where a pair is, for its spring: penetration by itself, its first touch, where its columns begin, their share.
 
     `whole`: stiffness of the whole face, all that a law without a table of the contact knows [N/m].
     """
 
-    depth: float
-    touch: float
-    curves: float
-    share: float
-    whole: float
+    depth: Value
+    touch: Value
+    curves: Value
+    share: Value
+    whole: Value
 
 
 class Spring(NamedTuple):
@@ -266,15 +329,15 @@ class Spring(NamedTuple):
     damage.
     """
 
-    force: float
-    stiffness: float
-    yielding: float
-    penetration: float
-    moment: float
-    cross: float
-    turning: float
-    carrying: float
-    rough: float
+    force: Value
+    stiffness: Value
+    yielding: Value
+    penetration: Value
+    moment: Value
+    cross: Value
+    turning: Value
+    carrying: Value
+    rough: Value
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
@@ -289,56 +352,59 @@ def flat_spring(stiffness: float, penetration_m: float, side: float) -> Spring:
 @entry(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def pair_spring(law: PairLaw, pair: PairPlace, tilt: float, penetration_m: float) -> Spring:
     """Return the spring of the drive flank of a pair at a tilt [rad] and at an approach beyond missing material [m]."""
-    nodes, values = law.places[layout.CONTACT_NODES], law.places[layout.CONTACT_VALUES]
-    if nodes == 0:
+    if law.places[layout.CONTACT_NODES] == 0:
         return flat_spring(pair.whole, penetration_m, 1.0)
-    approach = penetration_m - pair.touch
-    if values > 4:
-        return _tilted_spring(law, pair, tilt, approach, penetration_m)
-    if not approach > 0.0:  # a motion that diverges is no number in the end: it may not become a place in the table
-        return Spring(0.0, 0.0, 0.0, penetration_m, 0.0, 0.0, 0.0, 1.0, 0.0)
-    place = _node_place(law, pair, approach)
-    low = _across(law.numbers, place.here, place.there, pair.share)
-    high = _next_node(low)  # behind four values that of the next node follows in the same register
-    s_0, s_1, over, span = _slopes(low), _slopes(high), place.over, place.span
-    per_span = 1.0 / span
-    t = over * per_span
-    if t > 1.0:  # beyond the last node the slope stays
-        value, slope = high + s_1 * (over - 1.0 / per_span), s_1
-    else:
-        rise = (high - low) * per_span
-        bend, twist = 3.0 * rise - 2.0 * s_0 - s_1, s_0 + s_1 - 2.0 * rise
-        value, slope = low + over * (s_0 + t * (bend + t * twist)), s_0 + t * (2.0 * bend + 3.0 * t * twist)
-    shares = low + min(t, 1.0) * (high - low)
-    force, stiffness = extract(value, 0), extract(slope, 0)
-    carrying, rough = extract(shares, 2), extract(shares, 3)
-    return Spring(force, stiffness, stiffness, penetration_m, 0.0, 0.0, 0.0, carrying, rough)
+    return contact_spring(law, pair, tilt, penetration_m)
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _node_place(law: PairLaw, pair: PairPlace, way: float) -> RayPlace:
-    """Return where the node before a way [m] stands in both columns."""
+def contact_spring(law: PairLaw, pair: PairPlace, tilt: Value, penetration_m: Value) -> Spring:
+    """Return the same, or lanes of it, of a law with a table of the contact."""
+    approach, half_face = penetration_m - pair.touch, law.scalars[layout.CONTACT_HALF_FACE]
+    # A motion that diverges is no number in the end: it may not become a place in the table.
+    if law.places[layout.CONTACT_VALUES] > 4:
+        lift = tilt * half_face
+        radius = square_root(approach * approach + lift * lift)
+        touches = (radius > LEAST_M) & (magnitude(lift) < _LAST * (radius + approach))
+        if not any_of(touches):
+            return _where(touches, NO_ANSWER, penetration_m)
+        radius = select(touches, radius, half_face)
+        way = select(touches, approach, half_face), select(touches, lift, 0.0), radius
+        found = tilted_answer(law, _node_place(law, pair, radius), way, touches)
+        touches = touches & (found.force > 0.0)
+        return _where(touches, found, penetration_m)
+    touches = approach > 0.0
+    if not any_of(touches):
+        return _where(touches, NO_ANSWER, penetration_m)
+    place = _node_place(law, pair, select(touches, approach, half_face))
+    # Behind four values those of the next node follow in the same register.
+    both = gather_between(law.numbers, place.here, place.there, pair.share)
+    force, t = _cubic(place, both[0], both[1], both[4], both[5]), smaller(place.over, place.span) / place.span
+    shares = both[2] + t * (both[6] - both[2]), both[3] + t * (both[7] - both[3])
+    found = TiltedAnswer(force.value, force.slope, 0.0, 0.0, 0.0, shares[0], shares[1])
+    return _where(touches, found, penetration_m)
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _where(touches: Choice, found: TiltedAnswer, penetration_m: Value) -> Spring:
+    """Return the spring of what touches, and none elsewhere."""
+    stiffness = select(touches, found.stiffness, 0.0)
+    return Spring(
+        select(touches, found.force, 0.0), stiffness, stiffness, penetration_m, select(touches, found.moment, 0.0),
+        select(touches, found.cross, 0.0), select(touches, found.turning, 0.0), select(touches, found.carrying, 1.0),
+        select(touches, found.rough, 0.0),
+    )  # fmt: skip
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _node_place(law: PairLaw, pair: PairPlace, way: Value) -> RayPlace:
+    """Return where the node before a way [m] stands in both columns: the last but one from there on, however far."""
     nodes, values = law.places[layout.CONTACT_NODES], law.places[layout.CONTACT_VALUES]
     unit_m = law.scalars[layout.CONTACT_UNIT]
-    root = sqrt(way / unit_m)
-    node = int(root) if root < nodes - 1.0 else nodes - 2  # the last but one from there on, however far
-    here = int(pair.curves) + node * values
-    over, span = way - unit_m * (node * node), unit_m * (2.0 * node + 1.0)
-    return RayPlace(here, here + nodes * values, pair.share, over, span, values)
-
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _tilted_spring(law: PairLaw, pair: PairPlace, tilt: float, approach_m: float, penetration_m: float) -> Spring:
-    """Return the spring of a face whose ends may lift before all of it touches."""
-    lift = tilt * law.scalars[layout.CONTACT_HALF_FACE]
-    radius = sqrt(approach_m * approach_m + lift * lift)
-    if not (radius > LEAST_M and abs(lift) < HALF_RAYS[-1] * (radius + approach_m)):
-        return Spring(0.0, 0.0, 0.0, penetration_m, 0.0, 0.0, 0.0, 1.0, 0.0)
-    place, half_face = _node_place(law, pair, radius), law.scalars[layout.CONTACT_HALF_FACE]
-    force, stiffness, moment, cross, turning, carrying, rough = tilted_answer(
-        law.numbers, place, (approach_m, lift, radius), half_face
-    )
-    return Spring(force, stiffness, stiffness, penetration_m, moment, cross, turning, carrying, rough)
+    node = truncated(smaller(square_root(way / unit_m), nodes - 2.0))
+    before, here = as_doubles(node), truncated(pair.curves) + node * values
+    over, span = way - unit_m * (before * before), unit_m * (2.0 * before + 1.0)
+    return RayPlace(here, here + nodes * values, pair.share, over, span)
 
 
 # Springs of two pairs on one gear body, compiled.
@@ -365,12 +431,6 @@ class Before(NamedTuple):
     force: float
     stiffness: float
     change: float
-
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def alone_spring(law: PairLaw, pair: PairPlace, tilt: float) -> Spring:
-    """Return the spring of a pair at its own depth."""
-    return _pushed(pair_spring(law, pair, tilt, pair.depth))
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
@@ -410,29 +470,19 @@ def two_springs(
         if abs(d_i) <= max(settled * abs(f_i), least) and abs(d_j) <= max(settled * abs(f_j), least):
             near = True
             break
-    sprung_i = _settled(at_i, f_i, pair_i.depth - c * f_j, k_i * (1.0 - c * k_j) * inverse)
-    return sprung_i, _settled(at_j, f_j, pair_j.depth - c * f_i, k_j * (1.0 - c * k_i) * inverse), near
+    sprung_i = settled_spring(at_i, f_i, pair_i.depth - c * f_j, k_i * (1.0 - c * k_j) * inverse)
+    return sprung_i, settled_spring(at_j, f_j, pair_j.depth - c * f_i, k_j * (1.0 - c * k_i) * inverse), near
 
 
 NO_SPRING = Spring(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _pushed(spring: Spring) -> Spring:
-    """Return a spring without stiffness where it has no force."""
-    stiffness = spring.stiffness if spring.force != 0.0 else 0.0
-    return Spring(
-        spring.force, stiffness, stiffness, spring.penetration, spring.moment, spring.cross, spring.turning,
-        spring.carrying, spring.rough,
-    )  # fmt: skip
-
-
-@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def _settled(last: Spring, force: float, penetration_m: float, yielding: float) -> Spring:
+def settled_spring(last: Spring, force: Value, penetration_m: Value, yielding: Value) -> Spring:
     """Return the spring at the solution, of the last one that was asked for."""
-    force = max(force, 0.0)
+    force = larger(force, 0.0)
     moment = last.moment + last.cross * (penetration_m - last.penetration)
-    stiffness = last.stiffness if force != 0.0 else 0.0
+    stiffness = select(force != 0.0, last.stiffness, 0.0)
     return Spring(
         force, stiffness, yielding, penetration_m, moment, last.cross, last.turning, last.carrying, last.rough
     )

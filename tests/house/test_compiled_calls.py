@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tests.house.source_tree import ROOT, imports, tree
 
-DECORATORS = {"njit", "entry"}
+DECORATORS = {"njit", "entry", "overload"}  # what an overload names, compiled code calls
 FOLDERS = ("siggen", "diagnostics", "benchmarks", "tests", "docs")
 
 

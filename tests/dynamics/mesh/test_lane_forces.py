@@ -1,4 +1,4 @@
-"""The pair law in lanes writes the bytes of the scalar one, and steps of both may follow each other."""
+"""The pair law in lanes writes what the scalar one does, and steps of both may follow each other."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from siggen.damage.spalls import FlankSpall
 from siggen.gears.missing_material import missing_material
 from siggen.lanes import LANES
 from siggen.mesh.asperities import asperity_table
-from siggen.mesh.body_coupling import body_coupling
 from siggen.mesh.contact_table import contact_table
 from siggen.mesh.friction import composite_friction
 from siggen.mesh.lane_forces import NOT_HERE, lane_table, write_lane_forces
@@ -32,7 +31,7 @@ from siggen.mesh.pair_columns import (
 )
 from siggen.mesh.pair_law import PairLaw
 from siggen.mesh.pair_springs import pair_table
-from siggen.mesh.springs import SMOOTH_CHANGE
+from siggen.mesh.springs import EXACT_CHANGE
 from siggen.mesh.stiffness_options import StiffnessOptions
 from siggen.mesh.table_options import TableOptions, face_slices
 from siggen.motion.exponential_scheme import NODES
@@ -43,6 +42,10 @@ from tests.dynamics.pair_runs import RELIEF, gear_pair, law
 TEETH, POINTS, STEPS = StiffnessOptions(), 513, 3000
 GAUSS = 0.5 * (np.polynomial.legendre.leggauss(NODES)[0] + 1.0)
 WEIGHTS = 0.5 * np.polynomial.legendre.leggauss(NODES)[1]
+COUPLING_M_PER_N = 4e-10
+"""Of the size that thin bodies have: a sixth of a pair's own compliance."""
+SETTLED, LIGHT_N = 1e-4, 100.0
+"""Of the force, or of a light one, what pairs that share a gear body may be off by (`SMOOTH_CHANGE`); 2e-5 was seen."""
 
 
 def spalled(seed: int, *, tilts: bool, coupled: bool = True, **other: Any) -> PairLaw:
@@ -57,13 +60,12 @@ def spalled(seed: int, *, tilts: bool, coupled: bool = True, **other: Any) -> Pa
     options = TableOptions(3000.0, tilts=tilts)
     slices = face_slices(pair, options)
     lead = 2e-6 * ((np.arange(slices) + 0.5) / slices - 0.5)
-    along = np.linspace(pair.contact_start_m, pair.contact_end_m, POINTS)
     return law(
         missing_material(pair, RELIEF),
         whole_face(pair, tuple(damage), TEETH, POINTS),
         contact=contact_table(pair, tuple(damage), TEETH, options, POINTS, lead),
         friction=composite_friction(asperity_table(mesh(), [0.3e-6, 2e-6], RANGE, 2e4), 0.11),
-        coupling_m_per_n=body_coupling(pair, TEETH, along) if coupled else None,
+        coupling_m_per_n=np.full((1, POINTS), COUPLING_M_PER_N) if coupled else None,
         **other,
     )
 
@@ -83,27 +85,32 @@ def drawn_node(rng: np.random.Generator) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("tilts", "coupled"), [(True, True), (False, True), (True, False)])
-def test_forces_in_lanes_are_those_of_the_scalar_law_to_the_bit(tilts: bool, coupled: bool) -> None:
+def test_forces_in_lanes_are_those_of_the_scalar_law(tilts: bool, coupled: bool) -> None:
     chosen, rng = spalled(3, tilts=tilts, coupled=coupled), np.random.default_rng(5)
     assert chosen.slots == 2
     reference, pairs = (np.concatenate([pair_table(chosen)] * NODES) for _ in range(2))
-    table, pitches, taken, alike = lane_table(chosen, GAUSS), 3.0, 0, set()
+    table, pitches, taken, alike, other = lane_table(chosen, GAUSS), 3.0, 0, set(), 0
     for _ in range(STEPS):
         step = 0.015 * 0.5 ** rng.integers(0, 4)
         expected = drawn_node(rng)
         node = expected.copy()
-        said = write_node_forces(chosen, GAUSS, WEIGHTS, pitches, pitches + step, reference, expected, SMOOTH_CHANGE)
+        said = write_node_forces(chosen, GAUSS, WEIGHTS, pitches, pitches + step, reference, expected, EXACT_CHANGE)
         found = write_lane_forces(chosen, pitches, pitches + step, pairs, table, node)
         taken += found != NOT_HERE
         if found == NOT_HERE:
-            found = write_node_forces(chosen, GAUSS, WEIGHTS, pitches, pitches + step, pairs, node, SMOOTH_CHANGE)
-        assert found == said
+            found = write_node_forces(chosen, GAUSS, WEIGHTS, pitches, pitches + step, pairs, node, EXACT_CHANGE)
         alike.add(said)
-        rows = slice(NODE_NORMAL, NODE_ROWS)
-        assert node[rows, :NODES].tobytes() == expected[rows, :NODES].tobytes()
-        kept = np.ix_(range(4, 6), (SPRUNG, STIFFNESS, PAIR))
-        assert pairs[kept].tobytes() == reference[kept].tobytes()
+        other += found != said
+        rows, kept = slice(NODE_NORMAL, NODE_ROWS), np.ix_(range(4, 6), (SPRUNG, STIFFNESS, PAIR))
+        if coupled:
+            force = expected[NODE_NORMAL, :NODES]
+            off = np.abs(node[NODE_NORMAL, :NODES] - force).max()
+            assert off <= SETTLED * max(np.abs(force).max(), LIGHT_N)
+        else:  # to the bit
+            assert node[rows, :NODES].tobytes() == expected[rows, :NODES].tobytes()
+            assert pairs[kept].tobytes() == reference[kept].tobytes()
         pitches += step if rng.random() < 0.9 else 0.0  # a step that is taken again
+    assert other <= (2e-3 * STEPS if coupled else 0)  # a flank that carries less than a newton
     assert 0.85 * STEPS < taken < STEPS  # the others met a back flank, or a pair that enters or leaves
     assert {0, 1, 3, 4} < alike  # no pair, either one, both; and steps in which that changes
     assert min(alike) < 0
