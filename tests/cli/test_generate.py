@@ -32,8 +32,8 @@ def simulation(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     """Let the command generate with a stand-in for the physics, in this process."""
     chosen = SimpleNamespace(function=simulate)
 
-    def stand_in(loaded, out, workers, progress, *, part, executor, address, events, allowed_loss):
-        assert (workers in (None, 1), executor, address) == (True, None, None)
+    def stand_in(loaded, out, workers, progress, *, part, executor, events, allowed_loss):
+        assert (workers in (None, 1), executor) == (True, None)
         return write_fake_set(
             out, loaded, part=part, simulation=chosen.function, events=events, allowed_loss=allowed_loss
         )

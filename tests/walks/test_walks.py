@@ -21,7 +21,7 @@ from tests.walks.walking import FS_HZ, printed, recorded, walk
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "understand" / "baselines.md"
 STATES = ("healthy", "slight", "severe")
 SIZE = "--set specimens=6 --set duration_s=0.3 --set 'splits={train: 10, validation: 4, test: 6}'"
-RECORDING = "set/data/test-00000.parquet:4 --fs 25600 --rig tacho.yaml"
+RECORDING = "set/data/test-00000.parquet:2 --fs 25600 --rig tacho.yaml"
 
 
 @pytest.fixture(scope="session")

@@ -114,7 +114,7 @@ def test_features_are_written_where_asked(
 ) -> None:
     monkeypatch.setattr(reading, "open", lambda path: make_dataset(("train", "test")))
     out = tmp_path / "sub" / "features.parquet"
-    assert run(monkeypatch, "indicators", "anything", "--out", str(out)) == 0
+    assert run(monkeypatch, "indicators", str(tmp_path), "--out", str(out)) == 0
     assert capsys.readouterr().out.strip() == str(out)
     table = pq.read_table(out)
     assert table.num_rows == 6
@@ -130,11 +130,11 @@ def test_records_that_cannot_be_used_are_a_usage_error_with_a_way_out(
     short = make_dataset(("test",) * 2, duration_s=0.15)  # four pinion revolutions, one of the gear
     monkeypatch.setattr(reading, "open", lambda path: short)
     # 7 / 30 s: six pinion revolutions at 30 Hz, and one until the first pulse
-    assert run(monkeypatch, "indicators", "x", "--out", str(tmp_path / "o")) == 2
+    assert run(monkeypatch, "indicators", str(tmp_path), "--out", str(tmp_path / "o")) == 2
     error = capsys.readouterr().err
     assert "not one of 6 records can be used" in error
     assert "they have to last 0.24 s" in error
-    assert run(monkeypatch, "indicators", "x", "--speed", "40,30") == 2
+    assert run(monkeypatch, "indicators", str(tmp_path), "--speed", "40,30") == 2
     assert "--speed: received 40 to 30 Hz" in capsys.readouterr().err
 
 
