@@ -361,7 +361,10 @@ def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> T
         if rank <= MOST_RANKED or known_column(r.column, r.gears) is None
     ]  # fmt: skip
     shown = f"The best {len(rows)} of {len(found)}" if len(found) > len(rows) else "Ranking"
-    caption = f"{shown} between different specimens: AUC against healthy with 95 % limits. The score is their mean."
+    caption = (
+        f"{shown} between different specimens: AUC against healthy with 95 % limits. The score is their mean, of an "
+        "indicator that falls with damage 1 less it."
+    )
     return TableBlock(head, rows, caption=caption + BEHIND, sortable=True, tall=True)
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from siggen.dataset.reading import Dataset
 
 MODEL_ENDING = ".npz"
-LONGEST_NAME = 40
+LONGEST_NAME = 48
 """Of a label that stands on one line."""
 SIDE_BY_SIDE = 3
 """Single damages in one table, so that it fits 80 columns."""
@@ -178,8 +178,9 @@ def _labels(dataset: Dataset, record: Mapping[str, Any]) -> Table:
     title = cell(f"Record {record['record_id']} of {dataset.path}")
     schema = dataset.labels(columns=None).schema
     longest = max(map(len, (*schema.names, *(channel.column for channel in dataset.channels))))
-    names = Column("label", overflow="fold", min_width=min(longest, LONGEST_NAME))
-    table = Table(names, Column("value", overflow="fold"), "unit", title=title, title_justify="left")
+    names = Column("label", overflow="fold", no_wrap=longest <= LONGEST_NAME)
+    value, units = (Column(name, overflow="fold") for name in ("value", "unit"))
+    table = Table(names, value, units, title=title, title_justify="left")
     for field in schema:
         unit = (field.metadata or {}).get(b"unit", b"").decode(errors="replace")
         table.add_row(cell(field.name), _text(record[field.name]), cell(unit))

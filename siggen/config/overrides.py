@@ -8,7 +8,7 @@ from typing import Any
 
 from siggen.config.dynamics import RATED
 from siggen.config.inheritance import without_sizes
-from siggen.errors import ConfigError, Problem
+from siggen.errors import ConfigError, Problem, UsageError
 from siggen.keys.by_name import BY_NAME, named_entries
 from siggen.keys.merging import BY_WORD, in_keys
 from siggen.keys.problems import nearest, received_text
@@ -27,7 +27,13 @@ def apply_overrides(raw: Mapping[str, Any], overrides: Sequence[str]) -> dict[st
     ------
     ConfigError
         If an override is not of the form `path=value` or leads through something that is not there; all at once.
+    UsageError
+        If one text stands for a list of them.
     """
+    if isinstance(overrides, str):
+        raise UsageError(
+            f"overrides: received the text {overrides!r}; allowed: a list of texts, such as [{overrides!r}]"
+        )
     changed = copy.deepcopy(dict(raw))
     problems = []
     for override in overrides:

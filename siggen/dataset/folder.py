@@ -12,7 +12,7 @@ from siggen.dataset.environment import environment, fingerprint, version_text
 from siggen.dataset.gate import manifest_facts
 from siggen.dataset.inventory import Inventory
 from siggen.dataset.manifest import CARD, CONFIG, MANIFEST
-from siggen.dataset.object_name import DAMAGE, DATA_FOLDER, LABELS, SPLITS
+from siggen.dataset.object_name import DAMAGE, DATA_FOLDER, INTERNALS_FOLDER, LABELS, LIFE_FOLDER, SPLITS
 from siggen.dataset.shard import about_of, unpacked
 from siggen.dataset.storage import Storage
 from siggen.errors import ConfigError, DatasetError, VerificationError
@@ -33,7 +33,7 @@ class FolderContent:
     finished
         The manifest of the whole set, with every file that it names.
     published
-        Files that its manifest names and no run makes.
+        Files and folders that its manifest names and no run makes.
     """
 
     earlier: tuple[int, ...] = ()
@@ -55,6 +55,11 @@ def content_of(storage: Storage, design: SetDesign) -> FolderContent:
     manifest = _manifest(storage)
     if manifest is None or manifest.identity != design.identity:
         if not storage.exists(CONFIG):
+            if manifest is not None:
+                raise DatasetError(
+                    f"{storage.location} holds a set of another configuration, says its {MANIFEST}; allowed: the one "
+                    "that it was made of, with all that was changed in it then"
+                )
             _refuse_strangers(storage)
             return FolderContent()
         there = _refuse_other_set(storage, design)
@@ -73,7 +78,8 @@ def content_of(storage: Storage, design: SetDesign) -> FolderContent:
             "shards of two versions are never mixed. Go on with the version and the kind of processor that made it, or "
             f"make a new set: siggen generate {storage.location}/{CONFIG} --set specimens={design.specimens} --out NEW"
         )
-    published = tuple(name for name in manifest.files if "/" not in name and name not in OF_EVERY_SET)
+    folders = {name.split("/")[0] for name in manifest.files} - {DATA_FOLDER, INTERNALS_FOLDER, LIFE_FOLDER}
+    published = tuple(sorted(folders - {*OF_EVERY_SET}))
     return FolderContent(tuple(count for count in manifest.extensions if count < design.specimens), None, published)
 
 

@@ -13,6 +13,8 @@ from siggen.keys.problems import nearest
 MANIFEST = "manifest.json"
 CONFIG = "config.yaml"
 CARD = "README.md"
+CROISSANT, PREVIEWS = "croissant.json", "previews"
+"""What a published set has beside."""
 PHYSICS = "physics.json"
 """What `siggen verify --physics` found last; beside the set, in no manifest."""
 INJECTED = "injected.json"

@@ -13,7 +13,7 @@ from typing import Any
 import pyarrow as pa
 
 from siggen.dataset.card import quantities_text, tags
-from siggen.dataset.manifest import BLIND, CARD, INJECTED, MANIFEST
+from siggen.dataset.manifest import BLIND, CARD, CROISSANT, INJECTED, MANIFEST, PREVIEWS
 from siggen.dataset.new_folder import new_folder
 from siggen.dataset.reading import Dataset
 from siggen.dataset.reading import open as open_set
@@ -28,8 +28,6 @@ from siggen.publication.croissant import FOLDERS, TABLES, croissant
 from siggen.publication.dataset_info import dataset_info
 from siggen.publication.publication_facts import TEMPLATE, PublicationFacts, read_publication_facts
 from siggen.publication.published_card import published_card
-
-CROISSANT, PREVIEWS = "croissant.json", "previews"
 
 
 @dataclass(frozen=True, slots=True)

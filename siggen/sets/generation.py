@@ -86,7 +86,8 @@ def generate(
     if not content.published:
         return made
     note = (
-        f"{', '.join(content.published)} and the card of `siggen publish` are no part of the set now: publish it anew"
+        f"{', '.join(content.published)} and the card of `siggen publish` are no part of the set now: remove what is "
+        "left of them, and publish it anew"
     )
     return replace(made, notes=(*made.notes, note))
 

@@ -17,7 +17,7 @@ from siggen.columns.versions import SIMULATION_VERSION
 from siggen.dataset.environment import environment, fingerprint, version_text
 from siggen.dataset.gate import manifest_facts
 from siggen.dataset.inventory import Inventory
-from siggen.dataset.manifest import BLIND, CONFIG, INJECTED, MANIFEST, PHYSICS, read_manifest
+from siggen.dataset.manifest import BLIND, CONFIG, CROISSANT, INJECTED, MANIFEST, PHYSICS, read_manifest
 from siggen.dataset.object_name import DATA_FOLDER, INTERNALS_FOLDER, LABELS, LIFE_FOLDER, internals_name
 from siggen.dataset.reading import Dataset
 from siggen.dataset.seal import unsealed
@@ -295,7 +295,12 @@ def _repair(storage: Storage, manifest: Inventory | None, mismatches: Sequence[M
         again = f"siggen generate {where}/{CONFIG} --out {where}"
         if manifest is not None and any(one.what == CONFIG for one in damaged):
             again = f"siggen generate CONFIG --set specimens={manifest.specimens} --out {where}"
-            lines.append("CONFIG is the file that the set was made of")
+            lines.append("CONFIG is the file that the set was made of, with all that was changed in it then")
+        if manifest is not None and CROISSANT in manifest.files:
+            lines.append(
+                "the set was published: publishing the set that it is a copy of into a new folder brings all back. "
+                "What follows makes records and tables again, but not card, croissant.json and previews"
+            )
         # `generate` compares sizes alone of a finished set, and makes what is missing
         there = [one.what for one in damaged if one.problem != MISSING]
         first = f"{_removed(storage, there)}\n" if there else ""
