@@ -53,7 +53,7 @@ from siggen.mesh.pair_columns import (
 from siggen.mesh.pair_law import PairLaw
 from siggen.mesh.pair_springs import Engaged, between, damped, engage, engaged, placed, placed_contact, rubbed
 from siggen.mesh.springs import (
-    EXACT_CHANGE,
+    LEAST_CHANGE,
     MOST_STEPS,
     SMOOTH_CHANGE,
     Before,
@@ -256,7 +256,7 @@ def _two_springs(
         change = (at.force - force - k * c * (_of_other_slot(at.force) - other)) * inverse
         force = force + change
         size = magnitude(force)
-        least = EXACT_CHANGE * larger(size, _of_other_slot(size))
+        least = LEAST_CHANGE * larger(size, _of_other_slot(size))
         left = select(both, select(magnitude(change) <= larger(SMOOTH_CHANGE * size, least), 0.0, 1.0), 0.0)
         if step == MOST_STEPS - 1 or not any_of(left > 0.0):
             break

@@ -64,7 +64,7 @@ from siggen.mesh.pair_columns import (
 )
 from siggen.mesh.pair_law import PairLaw
 from siggen.mesh.springs import (
-    EXACT_CHANGE,
+    LEAST_CHANGE,
     NO_SPRING,
     Before,
     PairPlace,
@@ -382,7 +382,7 @@ def _share(law: PairLaw, pairs: FloatArray) -> None:
         # One at a time, the same pieces twice are no proof: all steps are taken, each far nearer than the one before.
         if settled and step <= MOST_SHARES // 2:
             return
-        if _newton_step(work, coupling) <= EXACT_CHANGE:
+        if _newton_step(work, coupling) <= LEAST_CHANGE:
             for i in range(slots):
                 pairs[i, PENETRATION] = _under_others(pairs, work, coupling, i)
             return

@@ -420,8 +420,10 @@ SMOOTH_CHANGE = 0.02
 A share of the larger one would let a pair that hardly touches be wrong by all of its force, however short the step:
 1.3e-3 of the accelerations at 0.9 Hz.
 """
-EXACT_CHANGE = 1e-5
-"""Of the larger force, what is settled in any case; where forces stand for themselves less than 1e-9 is left."""
+LEAST_CHANGE = 1e-5
+"""Of the larger force, below which a light pair need not come."""
+EXACT_CHANGE = 1e-8
+"""Where forces stand for themselves: less than 1e-8 is left. Tangents that are cut to be convex leave 3e-8 at 1e-5."""
 MOST_STEPS = 8
 
 
@@ -466,7 +468,7 @@ def two_springs(
         d_i = (at_i.force - f_i - k_i * c * (at_j.force - f_j)) * inverse
         d_j = (at_j.force - f_j - k_j * c * (at_i.force - f_i)) * inverse
         f_i, f_j = f_i + d_i, f_j + d_j
-        least = EXACT_CHANGE * max(abs(f_i), abs(f_j))
+        least = min(settled, LEAST_CHANGE) * max(abs(f_i), abs(f_j))
         if abs(d_i) <= max(settled * abs(f_i), least) and abs(d_j) <= max(settled * abs(f_j), least):
             near = True
             break

@@ -97,7 +97,7 @@ def test_forces_of_a_state_are_those_of_the_equations(script: Any, name: str) ->
         pitches, state = drawn(rng)
         expected = independently(state, pitches)
         found = compiled(law, state, pitches, pairs)
-        # Pairs on one gear body are settled to 1e-9 of the force; the rest is rounding.
+        # Pairs on one gear body are settled to less than this, see EXACT_CHANGE; the rest is rounding.
         scale = FORCE_N + abs(expected[0])
         np.testing.assert_allclose(found[:2], expected[:2], rtol=0.0, atol=1e-8 * scale)
         np.testing.assert_allclose(found[2:], expected[2:], rtol=0.0, atol=1e-8 * scale * MOMENT_N_M / FORCE_N)
