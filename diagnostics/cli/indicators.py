@@ -88,7 +88,7 @@ def _ranked_tables(
     from diagnostics.indicators.table import record_table
     from diagnostics.indicators.workers import fitting_workers
     from diagnostics.records.record_classes import refuse_lives
-    from diagnostics.records.usable_records import check_states
+    from diagnostics.records.usable_records import check_states, problem_lines
     from diagnostics.report.indicators import evaluated, findings, write_evaluation
     from diagnostics.statistics.indicator_statistics import AssessmentSettings
     from siggen.dataset.reading import open as open_set
@@ -103,7 +103,7 @@ def _ranked_tables(
     table = ranking_table(everything, dataset, leave_out=True)
     found = evaluated(table, AssessmentSettings(), terminal_stage)
     path = write_evaluation(dataset, found, out or beside(dataset.path, "_indicators"), values=True)
-    for problem in table.problems:
+    for problem in problem_lines(table.problems):
         echo(f"left out: {problem}", err=True)
     for sentence in findings(dataset, found)[1:]:
         echo(sentence)

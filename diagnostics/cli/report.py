@@ -14,7 +14,7 @@ from diagnostics.cli.set_options import Open, OwnIndicators, Seed, opened
 from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
-from siggen.errors import UsageError
+from siggen.errors import EXIT_MISMATCH, UsageError
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +82,8 @@ def report(
     gearboxes that run to failure it says how well baselines tell their remaining life. Beside it lie metrics.json,
     evaluation.csv with all indicators, figures and models.
 
+    Exit codes: 0 done, 2 no finished set, 4 the page is written, but the set lacks records to judge by.
+
     Example: siggen-diagnostics report runs/quickstart --open
 
     Example: siggen-diagnostics report runs/quickstart --no-cnn --test runs/other_gears --out runs/both
@@ -123,6 +125,8 @@ def report(
         echo(str(path))
     if show:
         opened(path)
+    if metrics.get("detectors", {}).get("alone") == {}:
+        raise typer.Exit(EXIT_MISMATCH)
 
 
 def _refuse(given: Mapping[str, object]) -> None:

@@ -23,7 +23,7 @@ from diagnostics.indicators.table import RecordTable, record_table, revolution_c
 from diagnostics.records.gear_train import MeshNames
 from diagnostics.records.record_classes import STATE, RecordClasses, check_dataset, record_classes, set_classes
 from diagnostics.records.state_classes import CLASS
-from diagnostics.records.usable_records import RecordCheck, problem_list
+from diagnostics.records.usable_records import RecordCheck, first_lines, problem_lines
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, UsageError
 from siggen.file_writing import write_file
@@ -124,8 +124,8 @@ def check_table(table: RecordTable, dataset: Dataset, *, can_leave_channels: boo
     notes = check.finish(dataset, can_leave_channels=can_leave_channels)
     if table.own_problems:
         raise DatasetError(
-            f"{dataset.path}: {len(table.own_problems)} values of your indicators failed\n"
-            f"{problem_list(list(table.own_problems))}\nMend the function, or leave the indicator out."
+            f"{dataset.path}: an indicator of yours failed\n{first_lines(problem_lines(table.own_problems))}\n"
+            "Mend the function, or leave the indicator out."
         )
     return (*notes, table.note) if table.note else notes
 

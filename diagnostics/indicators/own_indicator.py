@@ -26,7 +26,7 @@ from diagnostics.indicators.workers import mapped
 from diagnostics.records.recording import Recording, recordings
 from diagnostics.records.usable_records import RecordProblem
 from siggen.dataset.reading import Dataset
-from siggen.errors import UsageError
+from siggen.errors import UsageError, counted
 
 Found = tuple[dict[str, float], list[RecordProblem]]
 
@@ -71,18 +71,28 @@ def own_columns(
         Processes.
     advance : callable, optional
         Called after every record.
+
+    Raises
+    ------
+    UsageError
+        If one fails on every record.
     """
     if not own:
         return {}, []
     if workers > 1:
         _check_sendable(own)
     rows, problems = [], []
-    for values, failed in mapped(_usable(dataset, pulses_s, refused), partial(own_values, tuple(own)), workers):
+    for values, lost in mapped(_usable(dataset, pulses_s, refused), partial(own_values, tuple(own)), workers):
         rows.append(values)
-        problems += failed
+        problems += lost
         if advance:
             advance()
     names = [f"{indicator.name}__{channel.name}" for channel in dataset.channels for indicator in own]
+    for indicator in own:
+        failed = [problem for problem in problems if problem.text.startswith(indicator.failure)]
+        if failed and len(failed) == sum(name.startswith(f"{indicator.name}__") for row in rows for name in row):
+            records = counted(len({problem.record_id for problem in failed}), "record")
+            raise UsageError(f"{dataset.path}: on all {records} {failed[0].text} Mend the function, or leave it out.")
     return {name: np.array([row.get(name, math.nan) for row in rows]) for name in names}, problems
 
 
@@ -150,6 +160,11 @@ class OwnIndicator:
     name: str
     function: IndicatorFunction
 
+    @property
+    def failure(self) -> str:
+        """How the message of a failure begins."""
+        return f"indicator {self.name!r} failed: "
+
     def value(self, signal: np.ndarray, tacho_s: np.ndarray, gears: GearFacts) -> float:
         """Return the value for one channel of a record.
 
@@ -163,9 +178,10 @@ class OwnIndicator:
         try:
             return _one_number(self.function(signal.copy(), tacho_s.copy(), gears))
         except Exception as error:
+            said = " ".join(f"{type(error).__name__}: {error}".split())
             raise UsageError(
-                f"indicator {self.name!r} failed: {type(error).__name__}: {error}. It is called as "
-                "function(signal, tacho, gears) and has to return one float (nan: undefined)."
+                f"{self.failure}{said}. It is called as function(signal, tacho, gears) and has to return one float "
+                "(nan: undefined)."
             ) from error
 
 

@@ -22,7 +22,7 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable, revolution_columns
 from diagnostics.records.recording import names_of, pair_teeth
 from diagnostics.records.state_classes import chosen_states
-from diagnostics.records.usable_records import FEWEST_REVOLUTIONS, RecordProblem, is_rate, problem_list
+from diagnostics.records.usable_records import FEWEST_REVOLUTIONS, RecordProblem, first_lines, is_rate, problem_lines
 from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
@@ -133,7 +133,7 @@ def ranking_table(
     problems = _problems(table, rows)
     if problems and not leave_out:
         raise DatasetError(
-            f"{dataset.path}: {len(problems)} problems among {rows.size} records\n{problem_list(problems)}\n"
+            f"{dataset.path}: problems among {rows.size} records\n{first_lines(problem_lines(problems))}\n"
             f"{duration_advice(dataset, table.settings.frame_samples)}"
             "Mend them; `siggen-diagnostics indicators` does without these records and channels."
         )
@@ -148,7 +148,7 @@ def ranking_table(
         values |= with_history(table, labels, rows, channel, unusable[channel])
     if not any(np.isfinite(column).any() for column in values.values()):
         raise DatasetError(
-            f"{dataset.path}: not one of {rows.size} records can be used\n{problem_list(problems)}\n"
+            f"{dataset.path}: not one of {rows.size} records can be used\n{first_lines(problem_lines(problems))}\n"
             f"{duration_advice(dataset, table.settings.frame_samples)}Without usable records there is nothing to rank."
         )
     matrix = FeatureMatrix(np.stack(list(values.values()), axis=1), tuple(values), labels, gears=table.named)

@@ -78,7 +78,10 @@ class FoundSize:
 
 @dataclass(frozen=True, slots=True)
 class StateFound:
-    """One state: kind of damage, median area [mm^2], AUC against healthy, and share of its records with an alarm."""
+    """One state: kind of damage, median area [mm^2], AUC against healthy, and share of its records with an alarm.
+
+    Records of one gearbox alone give no score: the AUC is NaN.
+    """
 
     kind: str
     area_mm2: float
@@ -134,6 +137,10 @@ class JudgedDetector:
         """Whether a state is told from healthy: its lower AUC limit beats chance, its AUC what a sham may reach."""
         auc = self.states[state].auc
         return auc.low > CHANCE and (self.sham is None or auc.value > self.sham.high)
+
+    def loses(self, state: str) -> bool:
+        """Whether a state that has a score is not told from healthy."""
+        return bool(np.isfinite(self.states[state].auc.value)) and not self.tells(state)
 
     @property
     def told(self) -> tuple[str, ...]:
@@ -255,7 +262,7 @@ def _state(
 ) -> StateFound:
     rows = of_state | (labels["fault"] == HEALTHY)
     auc = area(score[rows], of_state[rows], weights[:, rows], labels["specimen_id"][rows])
-    share = _share(score, labels, weights, threshold, of_state)
+    share = _share(score, labels, weights, threshold, of_state) if np.isfinite(auc.value) else None
     return StateFound(kind, float(np.median(labels[AREA][of_state])), auc, share)
 
 
@@ -295,6 +302,8 @@ class Detectors:
 
     alone: dict[str, JudgedDetector]
     referenced: dict[str, JudgedDetector]
+    gearboxes: tuple[int, int] = (0, 0)
+    """With healthy, and with damaged records."""
 
     @property
     def strongest(self) -> JudgedDetector | None:
@@ -329,7 +338,9 @@ def judged_detectors(matrix: FeatureMatrix, training: Training | None, seed: int
         if training.referenced:
             rows = matrix.rows(test & training.referenced.kept)
             referenced |= _network(training.referenced.judged, NETWORK_REFERENCED, rows, training, seed)
-    return Detectors(alone, referenced if kept.any() else {})
+    healthy = matrix.labels["fault"] == HEALTHY
+    gearboxes = tuple(int(np.unique(matrix.groups[side]).size) for side in (healthy, ~healthy))
+    return Detectors(alone, referenced if kept.any() else {}, (gearboxes[0], gearboxes[1]))
 
 
 def evaluate(model: Any, data: FeatureMatrix, *, beside: bool = False, seed: int = 0) -> JudgedDetector:

@@ -185,7 +185,7 @@ def judged_metrics(found: Judged) -> dict[str, Any]:
         "chance_balanced_accuracy": 1.0 / len(found.scores.classes),
         "detection": detection_metrics(found.detection),
         "confusion": found.scores.confusion.tolist(),
-        "permuted_macro_auroc": [float(area) for area in found.permuted_auroc],
+        "permuted_macro_auroc": [float(area) if math.isfinite(area) else None for area in found.permuted_auroc],
         "temperature": found.calibration.temperature,
         "expected_calibration_error": found.calibration.after.numbers(),
         "expected_calibration_error_uncalibrated": found.calibration.before.numbers(),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from diagnostics.statistics.evaluation import Interval
 
@@ -48,23 +48,23 @@ def signed(value: float) -> str:
 
 def limits(found: Interval) -> str:
     """Return the limits of a value, or why there are none."""
-    if math.isnan(found.low):
-        return "no interval from one specimen"
-    return f"{decimal(found.low)} to {decimal(found.high)}"
+    return _limits(found, decimal)
 
 
 def signed_limits(found: Interval) -> str:
     """Return the limits of a difference, or why there are none."""
-    if math.isnan(found.low):
-        return "no interval from one specimen"
-    return f"{signed(found.low)} to {signed(found.high)}"
+    return _limits(found, signed)
 
 
 def percent_limits(found: Interval) -> str:
     """Return the limits of a share, or why there are none."""
+    return _limits(found, percent)
+
+
+def _limits(found: Interval, written: Callable[[float], str]) -> str:
     if math.isnan(found.low):
-        return "no interval from one specimen"
-    return f"{percent(found.low)} to {percent(found.high)}"
+        return "no interval from so few gearboxes"
+    return f"{written(found.low)} to {written(found.high)}"
 
 
 def minus(text: str) -> str:

@@ -21,6 +21,7 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.judging.judgement import REFERENCED as REFERENCED_NAME
 from diagnostics.judging.judgement import Judged
 from diagnostics.judging.of_split import Training
+from diagnostics.page.wording import decimal
 from diagnostics.prediction.model_facts import FACTS_FILE, MODEL_FILES, REFERENCED, ModelFacts, model_facts, write_facts
 from diagnostics.prediction.noise_floor import floor_features
 from diagnostics.prediction.training_distance import TrainingDistance, calibrated_distance, distance_features
@@ -263,7 +264,7 @@ def _scores(training: Training) -> str:
 
 
 def _row(found: Judged) -> str:
-    permuted = f"{found.permuted_auroc.mean():.2f}" if found.permuted_auroc.size else "-"
+    permuted = decimal(found.permuted_auroc.mean()) if found.permuted_auroc.size else "-"
     scores = (found.scores.accuracy, found.scores.balanced_accuracy, found.scores.macro_auroc)
     detected = f"{found.detection.every:.2f}" if found.detection else "-"
     cells = (found.name, *(f"{score:.2f}" for score in scores), detected, permuted)

@@ -18,7 +18,7 @@ from diagnostics.records.recording import Recording
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.signal.spectral_kurtosis import FEWEST_FRAMES
 from siggen.dataset.reading import Dataset
-from siggen.errors import DatasetError, UsageError
+from siggen.errors import DatasetError, UsageError, counted
 
 FEWEST_REVOLUTIONS = 2
 LARGEST_CLIPPED_SHARE = 1e-3
@@ -35,10 +35,6 @@ class RecordProblem:
     record_id: int
     channel: str
     text: str
-
-    def __str__(self) -> str:
-        """One line that names record and channel."""
-        return f"record {self.record_id}{f', channel {self.channel}' if self.channel else ''}: {self.text}"
 
 
 def record_problems(record: Recording, frame_samples: int, *, needs_tacho: bool) -> list[RecordProblem]:
@@ -173,11 +169,23 @@ def _number(value: Any) -> float:
     return float("nan") if value is None else float(value)
 
 
-def problem_list(problems: list[RecordProblem]) -> str:
-    """Return the first problems, a line each, and how many there are."""
-    shown = [f"  {problem}" for problem in problems[:PROBLEMS_SHOWN]]
-    rest = len(problems) - len(shown)
-    return "\n".join([*shown, *([f"  and {rest} more"] if rest else [])])
+def problem_lines(problems: Iterable[RecordProblem]) -> list[str]:
+    """Return every problem once, with the records and the channels that have it."""
+    alike: dict[str, tuple[dict[int, None], dict[str, None]]] = {}
+    for problem in problems:
+        records, channels = alike.setdefault(problem.text, ({}, {}))
+        records[problem.record_id] = channels[problem.channel] = None
+    found = []
+    for text, (records, channels) in alike.items():
+        where = ", ".join(filter(None, channels))
+        found.append(f"{_shown(list(records))}{f', channel {where}' if where else ''}: {text}")
+    return found
+
+
+def first_lines(lines: list[str]) -> str:
+    """Return the first lines, indented, and how many more there are."""
+    rest = len(lines) - PROBLEMS_SHOWN
+    return "\n".join(f"  {line}" for line in [*lines[:PROBLEMS_SHOWN], *([f"and {rest} more"] if rest > 0 else [])])
 
 
 RECORDS_SHOWN = 3
@@ -298,19 +306,11 @@ def _refused_channel(signal: np.ndarray) -> str:
 
 def _refusal(dataset: Dataset, found: dict[tuple[str, str], list[int]], can_leave_channels: bool) -> str:
     lines = [
-        f"  channel {channel} {text} in {_shown(records)}" if channel else f"  {_shown(records)}: {text}"
+        f"channel {channel} {text} in {_shown(records)}" if channel else f"{_shown(records)}: {text}"
         for (channel, text), records in found.items()
     ]
-    rest = len(lines) - PROBLEMS_SHOWN
-    more = [f"  and {rest} more"] if rest > 0 else []
-    return "\n".join(
-        [
-            f"{dataset.path}: records that cannot be used",
-            *lines[:PROBLEMS_SHOWN],
-            *more,
-            _way_out(dataset, found, can_leave_channels),
-        ]
-    )
+    way_out = _way_out(dataset, found, can_leave_channels)
+    return f"{dataset.path}: records that cannot be used\n{first_lines(lines)}\n{way_out}"
 
 
 def _way_out(dataset: Dataset, found: dict[tuple[str, str], list[int]], can_leave_channels: bool) -> str:
@@ -327,4 +327,4 @@ def _way_out(dataset: Dataset, found: dict[tuple[str, str], list[int]], can_leav
 def _shown(records: list[int]) -> str:
     more = " ..." if len(records) > RECORDS_SHOWN else ""
     listed = ", ".join(str(number) for number in records[:RECORDS_SHOWN])
-    return f"{len(records)} record(s) ({listed}{more})"
+    return f"{counted(len(records), 'record')} ({listed}{more})"

@@ -132,10 +132,7 @@ def first_answer(found: Detectors) -> str:
     """Say which damage is found from which size on, which states are told, or that none is; `**` marks what matters."""
     best = found.strongest
     if best is None:
-        return (
-            "**No answer**: that needs healthy and damaged records of "
-            f"**{FEWEST_SPECIMENS} gearboxes or more** in this set."
-        )
+        return f"**No answer**: {lacking_words(found)}"
     if not best.told:
         said = [_nothing_words(best)]
     elif best.sizes:
@@ -143,8 +140,31 @@ def first_answer(found: Detectors) -> str:
     else:
         said = [f"Told from healthy: **{_sizes(best, best.told[::-1])}**.", _lost_words(best)]
         said.append(f"{counted(best.healthy, 'healthy record')} are too few to name a size.")
-    said += [_below_chance(best), f"Detector: **{detector_words(best)}**.", _next_step(found)]
+    said += [_unjudged_words(best), _below_chance(best), f"Detector: **{detector_words(best)}**.", _next_step(found)]
     return " ".join(part for part in said if part)
+
+
+def lacking_words(found: Detectors) -> str:
+    """Say which records a set lacks to be judged, and how to go on."""
+    healthy, damaged = found.gearboxes
+    if not healthy:
+        on = "Add a healthy state under `states` (`healthy: {}`), and generate into a new folder"
+    elif not damaged:
+        on = "Add a state with `damage` under `states`, and generate into a new folder"
+    else:
+        on = "The same `siggen generate` with more gearboxes goes on with this set (`--set specimens=N`)"
+    return (
+        f"the set has healthy records of {counted(healthy, 'gearbox')} and damaged records of "
+        f"{counted(damaged, 'gearbox')}; needed are {FEWEST_SPECIMENS} or more of each. {on}."
+    )
+
+
+def _unjudged_words(best: JudgedDetector) -> str:
+    """Name the states of one gearbox alone, which have no score; empty without one."""
+    unjudged = [state for state, found in best.states.items() if not math.isfinite(found.auc.value)]
+    if not unjudged:
+        return ""
+    return f"No score for **{_sizes(best, unjudged)}**: records of a single gearbox; two or more are needed."
 
 
 def _nothing_words(best: JudgedDetector) -> str:
@@ -172,7 +192,7 @@ def _kinds_words(best: JudgedDetector) -> list[str]:
         elif told[kind]:
             said.append(_told_words(best, members[kind], name if len(kinds) > 1 else ""))
         else:
-            said.append(f"**{name}** is not told from healthy.")
+            said += [f"**{name}** is not told from healthy."] if any(map(best.loses, members[kind])) else []
     more = len(kinds) - MOST_KINDS
     return [*said, f"Further kinds of damage: {more}."] if more > 0 else said
 
@@ -202,14 +222,14 @@ def _told_words(best: JudgedDetector, members: list[str], name: str) -> str:
         if whole
         else f"**No size{of_kind} is found in nine of ten records**"
     )
-    lost = [state for state in order if state not in shares]
+    lost = [state for state in order if best.loses(state)]
     said = f"{first}. Records that alarm: {', '.join(alarms)}; healthy {percent(FALSE_ALARMS)}."
     return f"{said} {_lost_words(best, lost)}" if lost else said
 
 
 def _lost_words(best: JudgedDetector, states: Sequence[str] | None = None) -> str:
     """Name the states that are not told from healthy, of all or of some."""
-    lost = [state for state in states or best.states if not best.tells(state)]
+    lost = [state for state in states or best.states if best.loses(state)]
     return f"Not told from healthy: **{_sizes(best, lost)}**." if lost else ""
 
 
@@ -280,7 +300,7 @@ def first_certainty(found: Detectors, *, error_free: bool, audit: str) -> str:
         f"({spread}; 0.5 is chance, 1 is perfect)."
     ]
     sham = best.sham
-    lost = [name for name, state in best.states.items() if sham and not state.auc.value > sham.high]
+    lost = [name for name, state in best.states.items() if sham and state.auc.value <= sham.high]
     if sham and sham.low > CHANCE and lost:
         said = f"**Damage without effect is told too (AUC {decimal(sham.value)})**"
         parts.append(f"{said}: {joined(lost)} {'is' if len(lost) == 1 else 'are'} not told.")
@@ -475,13 +495,7 @@ def answer_sentences(found: Detectors, *, error_free: bool = False) -> list[tupl
     """
     best = found.strongest
     if best is None:
-        return [
-            (
-                "No answer",
-                "This set cannot say which damage is found. That needs healthy and damaged records of "
-                f"{FEWEST_SPECIMENS} gearboxes or more.",
-            )
-        ]
+        return [("No answer", capitalised(lacking_words(found)))]
     return [
         *([("On a sham", sham)] if (sham := sham_sentence(found)) else []),
         ("From which size", size_sentence(best)),
@@ -500,7 +514,7 @@ def sham_sentence(found: Detectors) -> str:
     reached = joined([f"{decimal(sham.value)} ({limits(sham)}) {side}" for side, (_, sham) in asked.items()])
     said = f"Damage without any effect is told from healthy records with an AUC of {reached}; 0.5 is chance."
     for side, (one, sham) in asked.items():
-        if lost := [name for name, state in one.states.items() if not state.auc.value > sham.high]:
+        if lost := [name for name, state in one.states.items() if state.auc.value <= sham.high]:
             said += f" What is told of {joined(lost)} {side} is within these limits, so it counts as not told."
     return said
 
@@ -518,7 +532,7 @@ def size_sentence(best: JudgedDetector) -> str:
 
 
 def _easiest(best: JudgedDetector) -> str:
-    name = max(best.states, key=lambda state: best.states[state].auc.value)
+    name = max(best.states, key=lambda state: np.nan_to_num(best.states[state].auc.value))
     return f"The state {name} has the largest AUC: {decimal(best.states[name].auc.value)}."
 
 
@@ -528,6 +542,8 @@ def _kind_sentence(best: JudgedDetector, kind: str, size: FoundSize | None, name
     smallest = min(states, key=lambda state: states[state].area_mm2)
     largest = max(states, key=lambda state: states[state].area_mm2)
     if not any(map(best.tells, states)):
+        if not any(map(best.loses, states)):
+            return f"{capitalised(name)} has no score: its states have records of a single gearbox each."
         return f"{capitalised(name)} is not told from healthy records: {_areas_under(states)}."
     if size is None:
         found = states[largest]

@@ -107,7 +107,7 @@ def _name(judged: Judged) -> str:
 
 def permutation_figure(training: Training) -> Figure:
     """Return macro-AUROC after training on permuted labels (dots) beside the true one (diamond)."""
-    shown = [judged for judged in training.judged if judged.permuted_auroc.size]
+    shown = [judged for judged in training.judged if np.isfinite(judged.permuted_auroc).any()]
     figure, axes = new_figure(height_in=1.2 + 0.55 * len(shown))
     axis = axes[0, 0]
     axis.axvline(0.5, color=CHANCE_COLOUR, linestyle="--", linewidth=1.0, label="chance")

@@ -249,4 +249,5 @@ def _draw_scores(drawing: Drawing, training: Training) -> None:
     named = {f"{said} named": records_link(split="test", named=said) for said in ("wrongly", "rightly")}
     drawing.behind["scores"] = RecordLinks("Test records", named)
     caption = "Permutation control: training with shuffled labels (dots) must give values around 0.5."
-    drawing.scores["permuted"] = (permutation_figure(training), caption)
+    if any(np.isfinite(judged.permuted_auroc).any() for judged in training.judged):
+        drawing.scores["permuted"] = (permutation_figure(training), caption)

@@ -26,6 +26,7 @@ from diagnostics.page.wording import counted, limits, percent
 from diagnostics.records.channel_quantities import ShownQuantity
 from diagnostics.records.gear_train import GearNames
 from diagnostics.records.state_classes import HEALTHY, damage_kinds, ordered_states
+from diagnostics.records.usable_records import problem_lines
 from diagnostics.statistics.detectable_size import detection_curve
 from diagnostics.statistics.indicator_statistics import (
     SIZES,
@@ -554,7 +555,7 @@ def report_numbers(dataset: Dataset, found: Evaluated, sentences: Sequence[str])
         "summary": list(sentences),
         "indicator_settings": asdict(table.settings),
         "assessment_settings": asdict(found.settings),
-        "left_out": [str(problem) for problem in table.problems],
+        "left_out": problem_lines(table.problems),
         "notes": note_counts(table),
     }
 
@@ -653,7 +654,7 @@ def evaluation_notes(dataset: Dataset, evaluated: Evaluated) -> list[str]:
     first, *_, last = evaluated.table.matrix.gears[0].gears
     settings = ", ".join(f"{name} {value}" for name, value in asdict(table.settings).items() if value is not None)
     return [
-        *(f"Left out: {problem}" for problem in table.problems),
+        *(f"Left out: {problem}" for problem in problem_lines(table.problems)),
         *note_counts(table),
         *kind_notes(dataset, evaluated.records.states),
         f"Revolutions averaged: {first} {_range(table.revolutions[:, 0])}, {last} {_range(table.revolutions[:, 1])}. "

@@ -168,7 +168,7 @@ def control_sentence(training: Training) -> str:
         return ""
     suspicious = [
         TITLES[judged.name]
-        for judged in training.judged
+        for judged in shown
         if judged.permuted_auroc.size > 1 and abs(np.nanmean(judged.permuted_auroc) - 0.5) > CHANCE_MARGIN
     ]
     verdict = (
@@ -197,7 +197,7 @@ def indicator_sentences(found: list[Separability]) -> list[str]:
     state, entry = hardest
     area = entry.auc[state]
     if math.isnan(area.low):
-        return ["The indicators below describe a single specimen. They say nothing about others."]
+        return ["The indicators below describe too few gearboxes to say anything about others."]
     turned = entry.turned(state)
     falls = turned is not area
     states = {name for other in found for name in other.auc}

@@ -223,7 +223,12 @@ def scores_of(dataset: Dataset, truth: Truth, columns: dict[str, Answers], first
     weights = bootstrap_weights(truth.specimen, seed, resamples)
     rows = tuple(row for task in TASKS for row in _task_rows(task, columns, first, truth, weights))
     if not rows:
-        raise UsageError(f"{dataset.path}: the split {truth.split} has nothing that these columns tell apart")
+        raise UsageError(
+            f"{dataset.path}: the split {truth.split} has {counted(truth.record_id.size, 'record')} of "
+            f"{counted(truth.gearboxes, 'gearbox', 'gearboxes')}, which these columns tell nothing apart in; needed "
+            "are two gearboxes or more with damage, and as many without. Judge another split, or add "
+            "gearboxes: the same `siggen generate` with `--set specimens=N`"
+        )
     return Scores(
         set_name=dataset.path.name,
         identity=str(dataset.manifest["identity"]),

@@ -177,13 +177,15 @@ def weighted_auc(values: np.ndarray, positive: np.ndarray, weights: np.ndarray, 
     weights : (b, n) float64
         Weights of the records, the same for all of a specimen.
     specimen : (n,) int
-        Specimen of each record; where there is a single one, its own pairs are all there is, and count.
+        Specimen of each record.
 
     Returns
     -------
     (b,) float64
-        NaN where no pair has a weight.
+        NaN where no pair has a weight, and where one side comes from a single specimen: it would speak of that one.
     """
+    if fewest_gearboxes(positive, specimen) < 2:
+        return np.full(len(weights), np.nan)
     above, below = np.flatnonzero(positive), np.flatnonzero(~positive)
     below = below[np.argsort(values[below], kind="stable")]
     drawn, rest = weights.T[above], sums_before(weights.T[below])
@@ -192,10 +194,9 @@ def weighted_auc(values: np.ndarray, positive: np.ndarray, weights: np.ndarray, 
     wins = np.einsum("nb,nb->b", drawn, beaten)
     pairs = drawn.sum(axis=0) * rest[-1]
     unique, first, index = np.unique(specimen, return_index=True, return_inverse=True)
-    if unique.size > 1:
-        own_wins, own_pairs = _own_pairs(values, positive, index.reshape(-1), unique.size)
-        squares = weights[:, first] ** 2
-        wins, pairs = wins - squares @ own_wins, pairs - squares @ own_pairs
+    own_wins, own_pairs = _own_pairs(values, positive, index.reshape(-1), unique.size)
+    squares = weights[:, first] ** 2
+    wins, pairs = wins - squares @ own_wins, pairs - squares @ own_pairs
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.asarray(np.where(pairs > 0.0, wins / pairs, np.nan))
 

@@ -84,7 +84,8 @@ def specimen_split(labels: dict[str, np.ndarray], classes: RecordClasses | None 
         if counts[name] == 0:
             raise DatasetError(
                 f"split {name!r} has no specimens: received {_listed(counts)}; training and judging need at least one "
-                "specimen each. Generate more (`siggen generate --set specimens=N`, new folder) or change `splits`."
+                "specimen each. The same `siggen generate` with `--set specimens=N` goes on with this set; or change "
+                "`splits`, in a new folder."
             )
     classes = classes or record_classes(labels)
     _check_classes(labels, classes, masks[TRAIN])
@@ -112,8 +113,8 @@ def _check_classes(labels: dict[str, np.ndarray], classes: RecordClasses, train:
     if single := [name for name, count in specimens.items() if count < FEWEST_SPECIMENS]:
         raise DatasetError(
             f"training has one specimen of {', '.join(single)}; a classifier would learn that gearbox instead of its "
-            f"{classes.kind}. Generate more into a new folder (`siggen generate --set specimens=N`) or give `splits` a "
-            "larger share of train."
+            f"{classes.kind}. The same `siggen generate` with `--set specimens=N` goes on with this set; or give "
+            "`splits` a larger share of train, in a new folder."
         )
 
 

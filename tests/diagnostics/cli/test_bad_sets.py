@@ -48,7 +48,7 @@ def good_set(tmp_path_factory: pytest.TempPathFactory) -> Path:
         fs_hz=12_800.0,
         duration_s=0.32,
         operating_points=[{"speed_hz": 30.0, "torque_nm": 60.0}],
-        splits={"train": 10, "validation": 5, "test": 5},
+        splits={"train": 10, "validation": 4, "test": 6},
     )
     write_fake_set(folder, config, simulation=turning)
     return folder
@@ -201,12 +201,14 @@ def test_a_bad_set_ends_with_2_what_is_wrong_and_the_way_out(
 @pytest.mark.parametrize(
     ("wanted", "parts"),
     [
-        (lambda row: row["state"] == "slight", ("single state", "Add damaged")),
-        (lambda row: row["specimen_id"] == 0, ("has no specimens", "specimens=N")),
+        (lambda row: row["state"] == "slight", ("healthy records of 0", "`healthy: {}`")),
+        (lambda row: row["state"] != "healthy", ("healthy records of 0", "`healthy: {}`")),
+        (lambda row: row["state"] == "healthy", ("damaged records of 0", "Add a state with `damage`")),
+        (lambda row: row["specimen_id"] == 0, ("of 1 gearbox and", "`--set specimens=N`")),
     ],
-    ids=["single state", "one gearbox"],
+    ids=["single state", "no healthy", "no damaged", "one gearbox"],
 )
-def test_the_report_of_a_set_that_nothing_can_learn_from_says_why_and_names_no_number(
+def test_the_report_of_a_set_that_judges_nothing_says_what_it_lacks_and_ends_with_4(
     wanted: Callable[[dict[str, object]], bool],
     parts: tuple[str, ...],
     good_set: Path,
@@ -216,12 +218,13 @@ def test_the_report_of_a_set_that_nothing_can_learn_from_says_why_and_names_no_n
     folder = tmp_path / "bad_set"
     shutil.copytree(good_set, folder)
     some_rows(wanted)(folder)
-    assert run(monkeypatch, "report", str(folder), "--no-cnn", "--out", str(tmp_path / "out")) == 0
+    assert run(monkeypatch, "report", str(folder), "--no-cnn", "--out", str(tmp_path / "out")) == 4
     metrics = json.loads((tmp_path / "out" / "metrics.json").read_text(encoding="utf-8"))
-    assert metrics["training"] is None
-    for part in parts:
-        assert part in " ".join(metrics["notes"])
     assert metrics["headline"].startswith("No answer: ")
+    for part in parts:
+        assert part in metrics["headline"].replace("\xa0", " ")
+    areas = [area for entry in metrics["separability"]["features"] for area in entry["auc"].values()]
+    assert all(area["value"] is None for area in areas), "a comparison within one gearbox, or with nothing, is no score"
 
 
 def test_a_single_clipped_record_is_noted_and_used(
@@ -232,7 +235,7 @@ def test_a_single_clipped_record_is_noted_and_used(
     samples(clipped_once)(folder)
     assert run(monkeypatch, "indicators", str(folder), "--out", str(out)) == 0
     assert "note: channel bearing_vertical is clipped" in capsys.readouterr().err
-    assert [note for note in table_notes(pq.read_table(out)) if "1 record(s) (3)" in note]
+    assert [note for note in table_notes(pq.read_table(out)) if "1 record (3)" in note]
 
 
 def test_a_good_set_passes_without_a_note(

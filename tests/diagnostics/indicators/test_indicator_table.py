@@ -19,7 +19,7 @@ from diagnostics.indicators.table import record_table
 from diagnostics.records.channel_quantities import RECORDED
 from diagnostics.records.gear_train import PAIR, pair_train, with_teeth
 from diagnostics.records.recording import Recording, recordings
-from diagnostics.records.usable_records import clipped_channels, clipped_share, record_problems
+from diagnostics.records.usable_records import clipped_channels, clipped_share, problem_lines, record_problems
 from diagnostics.signal.mesh_band import mesh_basebands
 from diagnostics.signal.order_domain import angle_grid, resample_to_angle
 from diagnostics.signal.shaft_signals import record_shafts, shaft_signals
@@ -119,7 +119,7 @@ def test_record_without_lines_is_a_problem_of_that_record(small: Any) -> None:
     record = next(recordings(small))
     noise = np.random.default_rng(1).standard_normal(12_800)
     found = record_result(replace(record, channels={"a": noise}), WITHOUT_TACHO)
-    assert str(found.problems[0]).startswith("record 0: no lines of 18/47 teeth stand above the noise")
+    assert problem_lines(found.problems)[0].startswith("1 record (0): no lines of 18/47 teeth stand above the noise")
 
 
 def test_the_arrow_table_has_labels_values_and_settings(table: IndicatorTable) -> None:
@@ -145,20 +145,35 @@ def test_own_indicator_stands_beside_the_others(small: Any) -> None:
     assert column(found, "other__bearing_horizontal")[0] == pytest.approx(expected)
 
 
+def of_loud_records(signal: np.ndarray, tacho_s: np.ndarray, gears: GearFacts) -> float:
+    return float(signal[signal.size if tacho_s[0] > 0.015 else 0])
+
+
 def broken(signal: np.ndarray, tacho_s: np.ndarray, gears: GearFacts) -> float:
-    return float(signal[10**9])
+    raise ValueError("no\nteeth")
 
 
-def test_own_indicator_that_fails_stops_the_set_or_is_undefined_and_noted(small: Any) -> None:
-    own = [OwnIndicator("broken", broken), OwnIndicator("other", peak)]
-    with pytest.raises(DatasetError, match=r"(?s)record 0, channel bearing_vertical: indicator 'broken' failed: Index"):
+def test_own_indicator_that_fails_on_some_records_is_one_line_and_undefined_there(small: Any) -> None:
+    own = [OwnIndicator("fragile", of_loud_records), OwnIndicator("other", peak)]
+    failed = (
+        r"\n  \d records? \([\d, .]+\), channel bearing_[a-z_, ]+: indicator 'fragile' failed: IndexError: [^\n]*\nMend"
+    )
+    with pytest.raises(DatasetError, match=failed):
         indicator_table(small, own)
     found = indicator_table(small, own, leave_out=True)
-    assert np.isnan(column(found, "broken__bearing_vertical")).all()
+    values = np.stack([column(found, f"fragile__bearing_{axis}") for axis in ("vertical", "horizontal")])
+    assert np.isnan(values).any()
+    assert np.isfinite(values).any()
     assert np.isfinite(column(found, "other__bearing_vertical")).all()
     assert np.isfinite(column(found, "rms__bearing_vertical")).all()
-    assert len(found.problems) == 2 * len(found.notes)
-    assert all("'broken' failed" in note for note in found.notes)
+    assert len(found.problems) == np.isnan(values).sum()
+
+
+def test_own_indicator_that_fails_on_every_record_stops_with_one_line(small: Any) -> None:
+    with pytest.raises(UsageError) as stopped:
+        indicator_table(small, [OwnIndicator("other", peak), OwnIndicator("broken", broken)], leave_out=True)
+    assert "on all 9 records indicator 'broken' failed: ValueError: no teeth. It is called as" in str(stopped.value)
+    assert "\n" not in str(stopped.value)
     with pytest.raises(UsageError, match="came twice"):
         indicator_table(small, [OwnIndicator("same", peak), OwnIndicator("same", peak)])
 
@@ -207,7 +222,7 @@ def test_record_that_cannot_be_used_is_left_out_with_its_reason(
     monkeypatch.setattr(READ, lambda dataset: iter([changed(good[0], **changes), *good[1:]]))
     whole = "train" in changes
     found = indicator_table(small, leave_out=True)
-    assert [problem for problem in found.problems if text in str(problem) and "record 0" in str(problem)]
+    assert [problem for problem in found.problems if text in problem.text and problem.record_id == 0]
     assert text in found.notes[0]
     assert math.isnan(column(found, "rms__bearing_vertical")[0])
     assert math.isnan(column(found, "rms__bearing_horizontal")[0]) == whole
@@ -219,7 +234,7 @@ def test_unusable_record_stops_the_set_unless_it_is_left_out(small: Any, monkeyp
     monkeypatch.setattr(READ, lambda dataset: iter(broken))
     with pytest.raises(
         DatasetError,
-        match=r"(?s)memory_set: 1 problems.*record 0, channel bearing_vertical.*diagnostics indicators",
+        match=r"(?s)memory_set: problems.*1 record \(0\), channel bearing_vertical.*diagnostics indicators",
     ):
         indicator_table(small)
     found = indicator_table(small, leave_out=True)

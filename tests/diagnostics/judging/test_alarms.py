@@ -14,6 +14,7 @@ from sklearn.svm import LinearSVC
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.judging.alarms import BOOSTED, CHOSEN, CLASSIFIER, DESIGN, INDICATOR, evaluate, judged_detectors
 from diagnostics.judging.evaluation import Entry, chosen_scores, distance, inner_scores
+from diagnostics.report.answer import first_answer
 from diagnostics.statistics.evaluation import column_auc
 from diagnostics.training.classifiers import LogisticBaseline
 from siggen.errors import UsageError
@@ -87,6 +88,20 @@ def test_a_healthy_reference_removes_what_differs_from_gearbox_to_gearbox() -> N
     beside = found.referenced[INDICATOR]
     assert beside.basis == "noise_7__x"
     assert beside.every.value == 1.0 > found.alone[INDICATOR].every.value
+
+
+def test_a_state_of_one_gearbox_has_no_score_and_the_answer_says_so() -> None:
+    values = noise(3 * GEARBOXES, 6)
+    matrix = matrix_of(values)
+    values[:, 3] = np.exp(-np.array([STATES.index(name) for name in matrix.labels["state"]]))
+    kept = matrix.rows((matrix.labels["state"] != "slight") | (matrix.labels["specimen_id"] == 5))
+    found = judged_detectors(kept, None, seed=0)
+    slight = found.alone[CHOSEN].numbers()["states"]["slight"]
+    assert slight["auc"]["value"] is slight["share_of_alarms"] is None
+    answer = first_answer(found).replace("\xa0", " ")
+    assert "No score for **slight (1 mm²)**: records of a single gearbox; two or more are needed." in answer
+    assert "Not told" not in answer
+    assert "undefined" not in answer
 
 
 def test_a_gearbox_is_in_one_fold_and_a_column_with_a_gap_is_not_taken() -> None:

@@ -42,8 +42,8 @@ def test_other_records_are_refused() -> None:
 
 
 def test_the_auc_of_one_state_ignores_the_others() -> None:
-    probability = np.array([[0.6, 0.3, 0.1], [0.1, 0.8, 0.1], [0.3, 0.3, 0.4], [0.2, 0.1, 0.7]])
-    found = Predictions(("healthy", "slight", "severe"), np.array([0, 1, 2, 2]), probability, np.arange(4))
+    probability = np.array([[0.6, 0.3, 0.1], [0.6, 0.3, 0.1], [0.1, 0.8, 0.1], [0.3, 0.3, 0.4], [0.2, 0.1, 0.7]])
+    found = Predictions(("healthy", "slight", "severe"), np.array([0, 0, 1, 2, 2]), probability, np.arange(5))
     assert state_auc(found, 0, 2, seed=0).value == 1.0
 
 

@@ -35,8 +35,8 @@ def with_samples(dataset: Any, change: Callable[[np.ndarray], np.ndarray]) -> An
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        (lambda signal: np.full_like(signal, 3.5), "is constant in 1 record(s)"),
-        (lambda signal: np.where(np.arange(signal.size) == 100, np.nan, signal), "not finite in 1 record(s)"),
+        (lambda signal: np.full_like(signal, 3.5), "is constant in 1 record"),
+        (lambda signal: np.where(np.arange(signal.size) == 100, np.nan, signal), "not finite in 1 record"),
     ],
     ids=["constant", "nan"],
 )

@@ -36,7 +36,7 @@ def indicator(low: float, high: float, value: float = 0.9, name: str = "fm4__a",
 def test_one_specimen_makes_no_statement_about_others() -> None:
     sentences = indicator_sentences([indicator(NAN, NAN)])
     assert len(sentences) == 1
-    assert "nothing about others" in sentences[0]
+    assert "too few gearboxes" in sentences[0]
     assert "nan" not in sentences[0]
 
 
@@ -172,7 +172,7 @@ def test_one_test_specimen_has_no_interval_and_no_plural() -> None:
     single = training(specimens=1, network=(0.1, NAN, NAN))
     text = " ".join([scores_sentence(single), comparison_sentence(single), trust_sentence(single)])
     assert "The test has 1\xa0record of 1\xa0specimen." in text
-    assert "no interval from one specimen" in text
+    assert "no interval from so few gearboxes" in text
     assert "A single test specimen gives no intervals" in text
     assert not re.search(r"\bnan\b|\b1\s\w+s\b", text)
 

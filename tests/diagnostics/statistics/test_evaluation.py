@@ -64,9 +64,10 @@ def test_auc_leaves_pairs_of_one_specimen_out_in_every_resample(seed: int) -> No
     np.testing.assert_allclose(weighted_auc(values, positive, weights, specimen), expected)
 
 
-def test_a_single_specimen_keeps_its_own_pairs() -> None:
-    values, positive = np.array([1.0, 2.0, 3.0]), np.array([False, True, True])
-    assert weighted_auc(values, positive, np.ones((1, 3)), np.zeros(3, dtype=int))[0] == 1.0
+def test_a_side_of_one_specimen_has_no_auc() -> None:
+    values, positive = np.array([1.0, 2.0, 3.0, 4.0]), np.array([False, False, True, True])
+    for specimen, expected in (([0, 0, 0, 0], np.nan), ([0, 1, 2, 2], np.nan), ([0, 1, 0, 1], 1.0)):
+        np.testing.assert_equal(weighted_auc(values, positive, np.ones((1, 4)), np.array(specimen))[0], expected)
 
 
 def test_limits_of_the_auc_cover_where_gearboxes_differ_more_than_damage_does() -> None:
