@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from collections.abc import Callable
 
 import typer
@@ -20,10 +18,17 @@ from diagnostics.cli.predict import predict
 from diagnostics.cli.report import report
 from diagnostics.cli.score import score
 from siggen.cli.echo import echo
-from siggen.errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_UNEXPECTED, EXIT_USAGE, SiggenError, path_fault
+from siggen.cli.program import run_program
+from siggen.errors import EXIT_OK
 
 PROGRAM = "siggen-diagnostics"
-TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
+TAKEN = "the set is unchanged; indicators once taken stay beside it, and the same command goes on with them"
+STAYS = {
+    "report": f"the page is not written; {TAKEN}",
+    "audit": f"the page is not written; {TAKEN}",
+    "indicators": TAKEN,
+}
+"""What stays on disk when a command ends early, and how to go on."""
 
 app = typer.Typer(
     name=PROGRAM,
@@ -62,23 +67,4 @@ def _options(
 def main() -> None:
     """Run the command line; known errors become a message and their exit code (0, 1, 2, 4 or 130), no traceback."""
     keep_memory()
-    try:
-        app()
-    except SiggenError as error:
-        echo(f"{PROGRAM}: {error}", err=True)
-        sys.exit(error.exit_code)
-    except BrokenPipeError:  # the reader of a pipe, such as head, has seen enough
-        sys.stdout = None
-    except KeyboardInterrupt:
-        echo(f"{PROGRAM}: interrupted", err=True)
-        sys.exit(EXIT_INTERRUPTED)
-    except Exception as error:
-        if words := path_fault(error):
-            echo(f"{PROGRAM}: {words}", err=True)
-            sys.exit(EXIT_USAGE)
-        if os.environ.get(TRACEBACK_VARIABLE):
-            raise
-        kind = type(error).__name__
-        again = f"run again with {TRACEBACK_VARIABLE}=1 for details"
-        echo(f"{PROGRAM}: unexpected {kind}: {error}; {again}", err=True)
-        sys.exit(EXIT_UNEXPECTED)
+    run_program(app, PROGRAM, STAYS)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from typing import Annotated
 
 import typer
@@ -13,15 +11,19 @@ from siggen.cli.generate import generate
 from siggen.cli.init import init
 from siggen.cli.inspect import inspect
 from siggen.cli.plan import plan
+from siggen.cli.program import run_program
 from siggen.cli.publish import publish
 from siggen.cli.show import show
 from siggen.cli.verify import verify
-from siggen.errors import EXIT_INTERRUPTED, EXIT_UNEXPECTED, EXIT_USAGE, SiggenError, path_fault
-
-TRACEBACK_VARIABLE = "SIGGEN_TRACEBACK"
 
 # Command files import nothing slow at their top, so that all of them together start at once.
 COMMANDS = (init, plan, generate, verify, show, inspect, publish)
+STAYS = {
+    "generate": "finished shards stay, and the same command goes on from there",
+    "verify": "the set is unchanged; the same command checks it from the beginning",
+    "publish": "the set is unchanged; the same command makes the folder anew",
+}
+"""What stays on disk when a command ends early, and how to go on."""
 
 app = typer.Typer(
     help="Labelled synthetic vibration records of spur gearboxes with tooth pitting and spalling.",
@@ -54,25 +56,4 @@ def _options(
 
 def main() -> None:
     """Run the command line; known errors become a message and their exit code, never a traceback."""
-    try:
-        app()
-    except SiggenError as error:
-        echo(f"siggen: {error}", err=True)
-        sys.exit(error.exit_code)
-    except BrokenPipeError:  # the reader of a pipe, such as head, has seen enough
-        sys.stdout = None
-    except KeyboardInterrupt:
-        echo("siggen: interrupted", err=True)
-        sys.exit(EXIT_INTERRUPTED)
-    except MemoryError:
-        echo("siggen: not enough memory; finished shards stay, and the same command goes on from there", err=True)
-        sys.exit(EXIT_UNEXPECTED)
-    except Exception as error:
-        if words := path_fault(error):
-            echo(f"siggen: {words}", err=True)
-            sys.exit(EXIT_USAGE)
-        if os.environ.get(TRACEBACK_VARIABLE):
-            raise
-        kind = type(error).__name__
-        echo(f"siggen: unexpected {kind}: {error}; run again with {TRACEBACK_VARIABLE}=1 for details", err=True)
-        sys.exit(EXIT_UNEXPECTED)
+    run_program(app, "siggen", STAYS)

@@ -11,11 +11,13 @@ from unittest.mock import Mock
 
 import pyarrow.parquet as pq
 import pytest
+import typer
 
 import diagnostics.cli.app
 import siggen.cli.app
 from diagnostics.cli.app import COMMANDS, main
 from diagnostics.records.recording import LABEL_NAMES, TACHO_NAME
+from siggen.cli.program import STAYS
 from siggen.columns.labels import operating_columns, target_columns
 from siggen.columns.record import ID_COLUMNS, TACHO_COLUMN
 from siggen.dataset import reading
@@ -72,12 +74,18 @@ def test_missing_extra_names_the_line_that_installs_it(
     assert how_to_install("diagnostics") in capsys.readouterr().err
 
 
-def test_interruption_has_its_exit_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interruption_says_what_stays_and_how_to_go_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     def interrupted(path: Path) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(reading, "open", interrupted)
     assert run(monkeypatch, "report", str(tmp_path)) == 130
+    assert capsys.readouterr().err == (
+        "siggen-diagnostics: interrupted; the page is not written; the set is unchanged; indicators once taken stay "
+        "beside it, and the same command goes on with them\n"
+    )
 
 
 @pytest.mark.parametrize("program", ["siggen", "siggen-diagnostics"])
@@ -85,23 +93,24 @@ def test_both_programs_word_every_kind_of_error_alike(
     program: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     module = {"siggen": siggen.cli.app, "siggen-diagnostics": diagnostics.cli.app}[program]
+    monkeypatch.setattr(sys, "argv", [program])
     monkeypatch.delenv("SIGGEN_TRACEBACK", raising=False)
     again = "run again with SIGGEN_TRACEBACK=1 for details"
     expected = {
         UsageError("no such set"): (2, f"{program}: no such set\n"),
-        KeyboardInterrupt(): (130, f"{program}: interrupted\n"),
+        KeyboardInterrupt(): (130, f"{program}: interrupted; {STAYS}\n"),
         ValueError("odd"): (
             1,
             f"{program}: unexpected ValueError: odd; {again}\n",
         ),
     }
     for error, (code, text) in expected.items():
-        monkeypatch.setattr(module, "app", Mock(side_effect=error))
+        monkeypatch.setattr(typer.Typer, "__call__", Mock(side_effect=error))
         with pytest.raises(SystemExit) as stop:
             module.main()
         assert (stop.value.code, capsys.readouterr().err) == (code, text)
     monkeypatch.setenv("SIGGEN_TRACEBACK", "1")
-    monkeypatch.setattr(module, "app", Mock(side_effect=ZeroDivisionError))
+    monkeypatch.setattr(typer.Typer, "__call__", Mock(side_effect=ZeroDivisionError))
     with pytest.raises(ZeroDivisionError):
         module.main()
 
