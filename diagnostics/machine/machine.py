@@ -120,7 +120,7 @@ def load_machine(folder: Path) -> Machine:
     except FileNotFoundError:
         raise UsageError(f"{folder}: is no machine; make one with `siggen-diagnostics baseline`") from None
     except (OSError, ValueError, pa.ArrowInvalid) as error:
-        raise UsageError(f"{folder}: is damaged ({error}); make it again from the healthy recordings") from error
+        raise UsageError(f"{folder}: is damaged; make it again from the healthy recordings") from error
     if content.get("version") != VERSION:
         raise UsageError(
             f"{folder}: is of version {content.get('version')}, this program reads {VERSION}; make it again"

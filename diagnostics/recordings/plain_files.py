@@ -54,7 +54,7 @@ def read_parquet(path: Path, row: int | None = None) -> Columns:
             numbers = [field.name for field in schema if _is_number(field.type) or pa.types.is_timestamp(field.type)]
             table = file.read([*audio, *lists] or numbers, use_threads=False)
     except (OSError, pa.ArrowInvalid) as error:
-        raise UsageError(f"{path}: cannot be read as Parquet ({error})") from error
+        raise UsageError(f"{path}: cannot be read as Parquet: it is none, or damaged") from error
     about: Any = {"simulated": IDENTITY in (schema.metadata or {}), "layout": {"format": "Parquet"}}
     about |= _channels(schema)
     if not (lists or audio):

@@ -376,7 +376,9 @@ def _values(
             convert_options=arrow.ConvertOptions(decimal_point=block.layout.decimal, column_types=kinds),
         )
     except pa.ArrowInvalid as error:
-        raise UsageError(_first_bad(path, lines, first, block, names) or f"{path}: cannot be read ({error})") from error
+        raise UsageError(
+            _first_bad(path, lines, first, block, names) or f"{path}: cannot be read as lines of numbers"
+        ) from error
     found: list[np.ndarray | None] = []
     stamped = set()
     for k, kind in enumerate(block.kinds):

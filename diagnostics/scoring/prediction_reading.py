@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pyarrow as pa
@@ -37,8 +38,20 @@ def keep_table(path: Path, folder: Path) -> None:
     except UsageError:
         raise
     except Exception as error:  # a damaged file finds every way out of a parser that there is
-        kind, said = type(error).__name__, " ".join(str(error).split())[:200]
-        raise UsageError(f"{path}: no readable table ({kind}: {said}); allowed are .parquet and .csv") from error
+        raise UsageError(f"{path}: {_unreadable(path, str(error))}") from error
+
+
+def _unreadable(path: Path, said: str) -> str:
+    """Return what is wrong with a file that is no table, and what is allowed; `said`: what the parser says."""
+    if not path.stat().st_size:
+        return "is empty (0 bytes); allowed: a row per record, with record_id and the columns of a task"
+    if "UTF" in said:
+        return "holds a text that is not UTF-8; save it as UTF-8"
+    if path.suffix.lower() != ".csv":
+        return "is no Parquet file, or a damaged one; allowed are .parquet and .csv"
+    line = re.search(r"Expected (\d+) columns, got (\d+)(?:: (.{,80}))?", said)
+    found = f"; received {line[2]} values under {line[1]} names{f': {line[3]}' if line[3] else ''}" if line else ""
+    return f"is no table{found}; allowed: names in the first line, and a line per record with a value for each name"
 
 
 def kept_table(folder: Path) -> pa.Table:

@@ -179,7 +179,9 @@ def _columns(content: bytes, ending: str) -> dict[str, FloatArray]:
             case _:
                 raise DataRefusal(f"the ending '{ending}'", "allowed: .csv, .parquet, .npz")
     except (pa.ArrowInvalid, ValueError, OSError, zipfile.BadZipFile) as error:
-        raise DataRefusal(f"a file that cannot be read ({error})", f"allowed: a {ending[1:]} file") from None
+        raise DataRefusal(
+            "a file that cannot be read", f"allowed: a {ending[1:]} file of named columns of numbers"
+        ) from error
     return {name: _numbers(name, table[name].to_numpy()) for name in table.column_names}
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -14,13 +13,11 @@ import typer
 
 from siggen.cli.echo import echo
 from siggen.cli.opened_log import opened_log
+from siggen.cli.working import ticking
 
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.progress import Progress
-
-LINE_EVERY_S = 30.0
-"""Where stderr is no terminal, as in the log of a job, a line so often."""
 
 LogJson = Annotated[
     str | None,
@@ -111,7 +108,9 @@ def _drawn() -> Iterator[Callable[[int, int, int], None]]:
 
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield _Lines()
+        lines = _Lines()
+        with ticking(lines.line):
+            yield lines.note
         return
     with _bar(console) as bar:
         task = bar.add_task("records", total=None, rate="", failed="")
@@ -149,18 +148,20 @@ def _bar(console: Console) -> Progress:
 
 
 class _Lines:
-    """Writes a line with rate, failures and time left, seldom."""
+    """How far a run is, as a line with rate, failures and time left."""
 
     def __init__(self) -> None:
-        self._begun_s = self._last_s = time.monotonic()
         self._first: int | None = None
+        self._far = (0, 0, 0)
 
-    def __call__(self, done: int, total: int, failures: int) -> None:
-        now_s = time.monotonic()
+    def note(self, done: int, total: int, failures: int) -> None:
         self._first = done if self._first is None else self._first
-        if now_s - self._last_s < LINE_EVERY_S:
-            return
-        self._last_s = now_s
-        rate = (done - self._first) / (now_s - self._begun_s)
+        self._far = done, total, failures
+
+    def line(self, passed_s: float) -> str:
+        done, total, failures = self._far
+        if self._first is None:
+            return f"the first records are on the way, {passed_s:.0f} s"
+        rate = (done - self._first) / passed_s
         left = f"{(total - done) / rate / 60:.1f} min left" if rate else "time left unknown"
-        echo(f"{done} of {total} records, {rate:.3g}/s, {failures} failed, {left}", err=True)
+        return f"{done} of {total} records in {passed_s:.0f} s, {rate:.3g}/s, {failures} failed, {left}"

@@ -1,14 +1,41 @@
-"""What a command is doing while it takes its time: a line with a clock on stderr."""
+"""What a command is doing while it takes its time: a clock or a bar on a terminal, elsewhere a line now and then."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from threading import Event, Thread
 
 from siggen.cli.echo import echo
 
 FIRST_TIME = "the first time after an install it also compiles, for up to a minute"
+LINE_EVERY_S, SELDOM = 10.0, 30.0
+"""Where stderr is no terminal: seconds between lines at first; later a thirtieth of the time that has passed."""
+
+
+@contextmanager
+def ticking(line: Callable[[float], str]) -> Iterator[None]:
+    """Write a line on stderr now and then until the block ends, as the log of a job needs it.
+
+    Parameters
+    ----------
+    line : callable
+        Returns it, of the seconds that have passed; called in a thread of its own.
+    """
+    over, begun_s = Event(), time.monotonic()
+
+    def tell() -> None:
+        while not over.wait(max(LINE_EVERY_S, (time.monotonic() - begun_s) / SELDOM)):
+            echo(line(time.monotonic() - begun_s), err=True)
+
+    thread = Thread(target=tell, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join()
 
 
 @contextmanager
@@ -27,48 +54,45 @@ def working(what: str, *, compiles: bool = True) -> Iterator[None]:
     from rich.table import Column
 
     console = Console(stderr=True)
+    title = f"{what} ({FIRST_TIME})" if compiles else what
+    if not console.is_terminal:
+        with ticking(lambda passed_s: f"{title}: {passed_s:.0f} s"):
+            yield
+        return
     text = TextColumn("{task.description}", table_column=Column(no_wrap=False))  # whole on a narrow terminal too
-    columns = (SpinnerColumn(), text, TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as line:
-        line.add_task(f"{what} ({FIRST_TIME})" if compiles else what, total=None)
+    with Progress(SpinnerColumn(), text, TimeElapsedColumn(), console=console, transient=True) as line:
+        line.add_task(title, total=None)
         yield
 
 
-QUIET_S = 2.0
-"""After which something is said where stderr is no terminal."""
-LINE_EVERY_S = 30.0
-
-
 @contextmanager
-def stepwise(what: str) -> Iterator[Callable[[int, int], None]]:
-    """Give what shows (done, total): a bar on a terminal, elsewhere a line after two seconds and now and then.
+def stepwise(what: str, steps: int | None = None) -> Iterator[Callable[[int, int], None]]:
+    """Give what shows (done, total): a bar on a terminal, elsewhere a line now and then.
 
     Parameters
     ----------
     what : str
         Such as `trying short records`.
+    steps : int, optional
+        In all, where that is known; a bar that ends early is filled and stays.
     """
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield _lines(what)
+        far = (0, steps or 0)
+
+        def note(done: int, total: int) -> None:
+            nonlocal far
+            far = done, total
+
+        with ticking(lambda passed_s: f"{what}: {far[0]} of {far[1]}, {passed_s:.0f} s"):
+            yield note
         return
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task(what, total=None)
+    columns = (TextColumn("{task.description:<28}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console, transient=steps is None) as bar:
+        task = bar.add_task(what, total=steps)
         yield lambda done, total: bar.update(task, completed=done, total=total)
-
-
-def _lines(what: str) -> Callable[[int, int], None]:
-    begun_s, due_s = time.monotonic(), QUIET_S
-
-    def tell(done: int, total: int) -> None:
-        nonlocal due_s
-        passed_s = time.monotonic() - begun_s
-        if passed_s >= due_s:
-            due_s = passed_s + LINE_EVERY_S
-            echo(f"{what}: {done} of {total}", err=True)
-
-    return tell
+        if steps is not None:
+            bar.update(task, completed=steps)

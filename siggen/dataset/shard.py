@@ -112,7 +112,7 @@ def _opened(content: bytes, *, hashed: bool = False) -> Iterator[pq.ParquetFile]
         with pq.ParquetFile(pa.BufferReader(content), page_checksum_verification=not hashed) as file:
             yield file
     except (OSError, pa.ArrowException, ValueError, KeyError, OverflowError, RuntimeError) as error:
-        raise VerificationError(f"it cannot be decoded ({error})") from error
+        raise VerificationError("it cannot be decoded") from error
 
 
 def about_of(table: pa.Table) -> dict[str, Any]:

@@ -38,7 +38,7 @@ SHARED = {
     "siggen.file_writing",
     "siggen.keys.yaml_source",
     "siggen.plain_json",
-} | {f"siggen.cli.{name}" for name in ("echo", "option_groups", "json_output")}
+} | {f"siggen.cli.{name}" for name in ("echo", "option_groups", "json_output", "program", "working")}
 """What both programs are built with; it knows no set."""
 TREE = {package: modules(package) for package in ROOMS}
 KNOWN = {name for paths in TREE.values() for name in paths}

@@ -2,20 +2,31 @@
 
 from __future__ import annotations
 
+import re
+import sys
+import time
+
 import pytest
 
-from diagnostics.base import progress
+from diagnostics.base.progress import terminal_stage
+from siggen.cli import working
 
 
-def test_a_log_gets_a_line_now_and_then_and_a_short_stage_none(
+def test_a_log_gets_a_plain_line_now_and_then_and_a_short_stage_none(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    now_s = 100.0
-    monkeypatch.setattr(progress.time, "monotonic", lambda: now_s)
-    with progress.terminal_stage("indicators", 7) as advance:
-        for _ in range(7):
-            now_s += 12.0
-            advance()
-    with progress.terminal_stage("saving", 1) as advance:
+    with terminal_stage("saving", 1) as advance:
         advance()
-    assert capsys.readouterr().err == "indicators: 3 of 7\nindicators: 6 of 7\n"
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr(working, "LINE_EVERY_S", 0.01)
+    said = ""
+    with terminal_stage("indicators", 7) as advance:
+        for _ in range(3):
+            advance()
+        while "\n" not in said:
+            time.sleep(0.01)
+            sys.stderr.flush()
+            said += capsys.readouterr().err
+    assert re.match(r"indicators: [0-3] of 7, 0 s\n", said)
+    assert "\x1b" not in said
+    assert "\r" not in said
