@@ -11,7 +11,7 @@ from siggen.cli.echo import echo
 from siggen.cli.json_output import echo_json
 from siggen.cli.picture_option import PictureOptions
 from siggen.cli.working import working
-from siggen.errors import UsageError
+from siggen.errors import UsageError, counted
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -90,11 +90,24 @@ class Inspection:
         return png
 
     def design(self, further: Sequence[str] = ()) -> SetDesign:
-        """Return the design of the set, with further overrides behind those of the user."""
+        """Return the design of the set, with further overrides behind those of the user.
+
+        Raises
+        ------
+        UsageError
+            If it has no gearbox of that number.
+        """
         from siggen.checks.loading import load_config
 
         source = self.source / "config.yaml" if self.source.is_dir() else self.source
-        return load_config(source, [*self.overrides, *further])
+        design = load_config(source, [*self.overrides, *further])
+        if self.gearbox >= design.specimens:
+            has = counted(design.specimens, "gearbox", "gearboxes")
+            raise UsageError(
+                f"--gearbox {self.gearbox}: {self.source} has {has}, 0 to {design.specimens - 1}; "
+                f"--set specimens={self.gearbox + 1} gives it that one"
+            )
+        return design
 
     def drawn(self, design: SetDesign) -> tuple[Specimen, int]:
         """Return the gearbox, and the number of the chosen mesh, 0 for the first one.

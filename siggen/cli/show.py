@@ -13,6 +13,7 @@ from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.option_groups import grouped
 from siggen.cli.picture_option import PictureOptions
 from siggen.cli.working import working
+from siggen.errors import UsageError, counted
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -80,12 +81,14 @@ def show(
     from siggen.dataset.reading import open as open_set
 
     dataset = open_set(source)
-    found = dataset.record(record)
+    found, drawn = dataset.record(record), _channel(dataset, channel)
+    if channel is not None and png is None:
+        raise UsageError(f"--channel {channel}: which channel a picture shows; add --png FILE or --open")
     if png is not None:
         with working("drawing the picture", compiles=False):
             from siggen.views.record import save_record_figure
 
-            save_record_figure(found, _channel(dataset, channel), dataset.fs_hz, png)
+            save_record_figure(found, drawn, dataset.fs_hz, png)
         picture.drawn(png, err=as_json)
     if as_json:
         echo_json(_facts(dataset, found))
@@ -101,7 +104,6 @@ def show(
 def _check(out: Path | None, *, internals: bool, overrides: Sequence[str] | None) -> None:
     """Refuse options that would change nothing, and a file that cannot be written, before long work."""
     from siggen.dataset.table_file import ENDINGS, check_table_file
-    from siggen.errors import UsageError
     from siggen.views.exported_model import check_model_file
 
     if out is None:
@@ -140,8 +142,6 @@ def _simulated(source: Path, record: int, out: Path, overrides: Sequence[str], *
 
 
 def _channel(dataset: Dataset, name: str | None) -> ChannelColumn:
-    from siggen.errors import UsageError
-
     known = {channel.name: channel for channel in dataset.channels}
     if name is not None and name not in known:
         raise UsageError(f"--channel {name}: {dataset.path} has the channels {', '.join(known)}")
@@ -172,8 +172,6 @@ def _rms(signal: Any) -> float:
 
 def _labels(dataset: Dataset, record: Mapping[str, Any]) -> Table:
     from rich.table import Column, Table
-
-    from siggen.errors import counted
 
     title = cell(f"Record {record['record_id']} of {dataset.path}")
     schema = dataset.labels(columns=None).schema

@@ -51,6 +51,11 @@ class Publication:
     bytes: int
     audit: Path | None
 
+    def __repr__(self) -> str:
+        """One line: how many files were made and copied, and which audit the card quotes."""
+        made, copied = counted(len(self.texts), "file"), counted(len(self.copied), "file")
+        return f"Publication({made} made, {copied} of {self.bytes / 1e6:.1f} MB copied, audit {self.audit})"
+
 
 def publication(path: Path | str, facts_file: Path | None, audit: Path | None = None) -> Publication:
     """Return what `publish` would write, after all checks but those of the target.

@@ -34,6 +34,7 @@ def test_json_alone_is_one_object_with_numbers(view: View) -> None:
         ("housing quickstart", "give --out housing.csv, --json for the numbers"),
         ("housing quickstart --out housing.txt", r"allowed are \.csv"),
         ("errors quickstart --state slight --state severe --json", "--state: siggen inspect errors takes one"),
+        ("modes quickstart --json --gearbox 60", "quickstart has 24 gearboxes, 0 to 23; --set specimens=61 gives it"),
         ("pressure quickstart --tooth gear --json", "an index such as 4, or a gear and an index such as gear:4"),
         ("pressure quickstart --state sever --json", "--state: received 'sever'; allowed: healthy, .*"),
     ],

@@ -92,6 +92,8 @@ def test_the_picture_is_written_and_its_path_alone_is_on_stdout(folder: Path, tm
         (["--record", "3", "--set", "duration_s=0.1"], "add --out"),
         (["--record", "3", "--internals", "--out", "x.npz"], "equations of motion"),
         (["--record", "3", "--png", "x.png", "--channel", "casing"], "bearing_vertical"),
+        (["--record", "3", "--channel", "casing"], "bearing_vertical"),
+        (["--record", "3", "--channel", "bearing_vertical"], "add --png FILE or --open"),
     ],
 )
 def test_wrong_wishes_are_answered_with_what_there_is(folder: Path, arguments: list[str], message: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from pathlib import Path
 from typing import Any
@@ -103,6 +104,11 @@ def test_the_list_of_licences_is_that_of_an_independent_library() -> None:
     names = _identifiers()
     assert {"CC-BY-4.0", "CC0-1.0", "ODC-By-1.0", "BSD-3-Clause"} <= set(names.values())
     assert all(canonicalize_license_expression(lower) == name for lower, name in names.items())
+
+
+def test_what_publish_returns_is_one_short_line(kept: Path, tmp_path: Path) -> None:
+    shown = repr(publish(kept, tmp_path / "set", facts_file(tmp_path)))
+    assert re.fullmatch(r"Publication\(\d+ files made, \d+ files of [\d.]+ MB copied, audit None\)", shown)
 
 
 def test_a_published_folder_is_a_set_that_opens_and_verifies(kept: Path, published: Path) -> None:

@@ -12,7 +12,7 @@ from siggen.errors import EngineError
 
 def test_a_killed_process_is_said_in_words() -> None:
     with (
-        pytest.raises(EngineError, match="one of 1 process was ended from outside.*the same command begins again"),
+        pytest.raises(EngineError, match=r"one of 1 process was ended from outside.*the same command begins again"),
         process_pool(1) as pool,
     ):
         pool.submit(os.abort).result()
