@@ -34,7 +34,7 @@ from diagnostics.statistics.evaluation import Interval, area, area_interval, boo
 from diagnostics.statistics.indicator_statistics import size_interval
 from diagnostics.training.feature_classifier import DEFAULT_STRENGTH
 from diagnostics.training.referenced import healthy_referenced
-from siggen.errors import UsageError
+from siggen.errors import UsageError, counted
 
 FALSE_ALARMS, FOUND, CHANCE = 0.05, 0.9, 0.5
 FEWEST_HEALTHY = 20
@@ -343,7 +343,9 @@ def judged_detectors(matrix: FeatureMatrix, training: Training | None, seed: int
     return Detectors(alone, referenced if kept.any() else {}, (gearboxes[0], gearboxes[1]))
 
 
-def evaluate(model: Any, data: FeatureMatrix, *, beside: bool = False, seed: int = 0) -> JudgedDetector:
+def evaluate(
+    model: Any, data: FeatureMatrix, *, values: np.ndarray | None = None, beside: bool = False, seed: int = 0
+) -> JudgedDetector:
     """Judge a classifier of your own as a report judges its own: on every gearbox, by what has learnt on others.
 
     Parameters
@@ -353,6 +355,8 @@ def evaluate(model: Any, data: FeatureMatrix, *, beside: bool = False, seed: int
         `predict_proba(X)`. Each of five folds fits a copy to whether records are damaged.
     data : FeatureMatrix
         What `diagnostics.table` returned.
+    values : (records, ...), optional
+        What it sees in place of the indicators, as of a network: `diagnostics.averages(dataset).values`.
     beside : bool
         Whether it sees logarithms minus those of other healthy records of the same gearbox.
     seed : int
@@ -381,7 +385,13 @@ def evaluate(model: Any, data: FeatureMatrix, *, beside: bool = False, seed: int
     if not hasattr(model, "fit") or not any(hasattr(model, name) for name in ("decision_function", "predict_proba")):
         what = f"{type(model).__name__} without `fit` and `decision_function` or `predict_proba`"
         raise UsageError(f"evaluate: received {what}; allowed: classifiers of scikit-learn, and what has these methods")
-    taken = healthy_referenced(data)[0] if beside else data
+    if values is not None and (beside or len(values) != len(data.values)):
+        what = "values beside a healthy record" if beside else counted(len(values), "row")
+        raise UsageError(
+            f"evaluate: received {what}; allowed: without `beside`, one row for each of "
+            f"{counted(len(data.values), 'record')} of the table, in its order"
+        )
+    taken = healthy_referenced(data)[0] if beside else replace(data, values=data.values if values is None else values)
     if too_few(taken):
         raise UsageError(
             f"evaluate: received too few gearboxes; allowed: {FEWEST_SPECIMENS} or more with healthy records, and as "

@@ -18,6 +18,7 @@ from diagnostics.loader.window_arrays import Windows
 from diagnostics.records.record_classes import STATE, set_classes
 from diagnostics.records.state_classes import CLASS
 from diagnostics.signal.shaft_signals import SHAFT_ORDERS
+from diagnostics.training.splits import TEST, TRAIN, VALIDATION
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError
 
@@ -182,8 +183,8 @@ def table_averages(dataset: Dataset, classifiers: pa.Table) -> AveragedRecords:
     return averaged_records(record_table(dataset, table_settings(classifiers)))
 
 
-def averages(dataset: Dataset, split: str, *, classes: str = STATE) -> Windows:
-    """Return one row block per record of a split: what the shipped 1-D network takes.
+def averages(dataset: Dataset, split: str | None = None, *, classes: str = STATE) -> Windows:
+    """Return one row block per record: what the shipped 1-D network takes.
 
     The averages are kept beside the set with its indicators, so that only the first call of any split computes them.
 
@@ -191,8 +192,8 @@ def averages(dataset: Dataset, split: str, *, classes: str = STATE) -> Windows:
     ----------
     dataset : siggen Dataset
         What `siggen.open` returned.
-    split : str
-        train, validation or test.
+    split : str, optional
+        train, validation or test; by default all records, in the order of `diagnostics.table`.
     classes : str
         What `class_id` counts: the `state` of a record, or its primary `fault`; healthy ones are one class.
 
@@ -210,7 +211,7 @@ def averages(dataset: Dataset, split: str, *, classes: str = STATE) -> Windows:
         If the classes are of an unknown kind.
     """
     matrix, names = table(dataset, classes=classes), set_classes(dataset, classes).names
-    chosen = np.flatnonzero(matrix.labels["split"] == split)
+    chosen = np.flatnonzero(np.isin(matrix.labels["split"], (TRAIN, VALIDATION, TEST) if split is None else (split,)))
     values = average_rows(averaged_records(record_table(dataset)).chosen(chosen))
     labels = {name: matrix.labels[name][chosen] for name in ("record_id", "specimen_id", "state_id")}
     labels["class_id"] = np.array([names.index(name) for name in matrix.labels[CLASS][chosen].tolist()], dtype=np.int64)

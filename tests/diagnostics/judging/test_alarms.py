@@ -23,6 +23,16 @@ GEARBOXES, NOISE_COLUMNS = 24, 400
 STATES = ("healthy", "slight", "severe")
 
 
+class Loudest:
+    """Takes blocks of rows, as a network does."""
+
+    def fit(self, X: np.ndarray, y: np.ndarray) -> None:
+        assert X.ndim == 3
+
+    def decision_function(self, X: np.ndarray) -> np.ndarray:
+        return np.asarray(X.max(axis=(1, 2)))
+
+
 class Silent:
     """Scores nothing."""
 
@@ -172,6 +182,10 @@ def test_any_classifier_is_judged_as_those_of_a_report_are() -> None:
     assert forest.states["severe"].auc.low > 0.5
     assert f"severe: AUC {forest.states['severe'].auc.value:.3f}" in str(forest)
     assert evaluate(LinearSVC(), matrix).specimens == GEARBOXES  # has no probabilities
+    loudest = evaluate(Loudest(), matrix, values=values.reshape(-1, 3, 10))  # what a network would see
+    assert loudest.every == evaluate(Loudest(), replace(matrix, values=values.reshape(-1, 3, 10))).every
+    with pytest.raises(UsageError, match=r"received 5 rows; allowed: .*one row for each of \d+ records of the table"):
+        evaluate(Loudest(), matrix, values=values[:5])
     with pytest.raises(UsageError, match=r"received the class LinearSVC; allowed: one of it, LinearSVC\(\)$"):
         evaluate(LinearSVC, matrix)
     with pytest.raises(UsageError, match=r"received a ndarray; allowed: what diagnostics\.table returned"):
