@@ -57,6 +57,8 @@ class Audit:
         What attackers tell of states in whose damage nothing is removed.
     missing : str
         `healthy` or `damaged` where the set has no such records.
+    made_again : str
+        The command that simulates records of the set again; empty where nothing can.
     """
 
     findings: tuple[Finding, ...]
@@ -74,6 +76,7 @@ class Audit:
     reference: ReferenceComparison | None = None
     shams: tuple[ShamFound, ...] = ()
     missing: str = ""
+    made_again: str = ""
 
     def on_sham(self, attacker: str) -> float:
         """Return the AUC that an attacker reaches on a sham; NaN where it was not asked.

@@ -231,10 +231,21 @@ def audit_summary(audit: Audit) -> list[str]:
     found += reference_sentences(audit.reference) if audit.reference else []
     return [
         audit.verdict,
+        *first_sentences(audit),
         *sham_sentences(audit.shams),
         *found,
         *_hardest_sentence(audit),
         *([] if audit.gearboxes_needed else _size_sentence(shown_ladders(audit))),
+    ]
+
+
+def first_sentences(audit: Audit) -> list[str]:
+    """Say what comes before any audit of a set that siggen made."""
+    if not audit.made_again:
+        return []
+    return [
+        f"First run `{audit.made_again}`: it simulates records again, so that any change of a file shows. An audit "
+        "sees only the kinds of change that it looks for."
     ]
 
 

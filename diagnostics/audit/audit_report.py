@@ -9,6 +9,7 @@ import math
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 import numpy as np
@@ -51,6 +52,9 @@ from siggen.dataset.reading import Dataset
 from siggen.errors import how_to_install
 from siggen.file_writing import write_file
 from siggen.plain_json import json_text
+
+VERIFIED = 10
+"""Records to simulate again before an audit: one that changed all damaged ones is missed once in a thousand."""
 
 SEEN_ALONE, BESIDE = "alone", "beside a healthy record"
 """What attackers see of a record."""
@@ -205,7 +209,13 @@ def audit_set(
         reference=beside,
         shams=shams,
         missing=missing,
+        made_again=_made_again(dataset),
     )
+
+
+def _made_again(dataset: Dataset) -> str:
+    """Return the command that simulates records of a set again; empty for recordings and sealed sets."""
+    return f"siggen verify {quote(str(dataset.path))} --sample {VERIFIED}" if dataset.is_simulated else ""
 
 
 def _detections(measured: MeasuredSet, seed: int) -> dict[str, list[Detectability]]:

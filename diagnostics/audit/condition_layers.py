@@ -3,10 +3,10 @@
 Labels of the conditions, texts and digits among them, order of the files, bytes of samples, noise over and between
 channels, lags, and the layers of raw records.
 
-* Texts: length, beginning, and parts of the date. A text that is another one in every record tells no state as a whole;
-  its beginning or its day may.
-* Digits: how numbers are written: a column that went through another program in one state keeps its values and loses
-  digits.
+* Texts: length, beginning, characters at every place from both ends, residues of the last number, and parts of the
+  date. A text that is another one in every record tells no state as a whole; a character or its day may.
+* Digits: how numbers are written, and residues of whole ones: a column that went through another program in one state
+  keeps its values and loses digits.
 * Noise beside a reference: what the averages of both shafts leave is noise and leftover of the lines, since no tacho of
   one pulse a turn follows a shaft exactly. A damaged tooth makes lines stronger, so its leftover rises too, by no more
   decibels than the lines do: with a noise N and a share j of lines of power S, N + j S rises by less than S. So a rise
@@ -32,6 +32,7 @@ import numpy as np
 from diagnostics.audit.averaged_lines import line_array
 from diagnostics.audit.finding import must_not_tell
 from diagnostics.audit.measured_set import MeasuredSet
+from diagnostics.audit.raw_records import OF_NO_GEARBOX
 from diagnostics.indicators.background_levels import HIGHEST_NOISE_SHARE, LOWEST_NOISE_HZ, NOISE_BANDS, NOISE_LEVELS
 from diagnostics.records.sample_bytes import BYTES
 from diagnostics.statistics.evaluation import mean_of_defined
@@ -39,6 +40,8 @@ from siggen.keys.column import Role
 
 FEW_DIGITS = 12
 """A number that was computed has 15 to 17."""
+
+MODULI = (2, 3, 4, 5, 7, 8, 9, 10, 11, 13)
 
 
 def digit_columns(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
@@ -52,6 +55,17 @@ def digit_columns(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
     written = np.isfinite(values) & (values != 0.0)
     found = {f"few digits of {name}": few & written, f"single precision of {name}": is_single & written}
     return _varied(found) | zero_signs(name, values)
+
+
+def residue_columns(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
+    """Return which whole numbers (records,) leave each residue, (records,) float64 each; what does not vary is left."""
+    return _varied(
+        {
+            f"{name} is {residue} modulo {modulus}": values % modulus == residue
+            for modulus in MODULI
+            for residue in range(modulus)
+        }
+    )
 
 
 def zero_signs(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
@@ -69,6 +83,9 @@ def _digits(value: float) -> int:
 
 MOST_BEGINNINGS, LONGEST_BEGINNING = 8, 4
 """Beginnings that are columns, the most frequent first, and characters that a beginning may have."""
+
+LONGEST_TEXT, MOST_CHARACTERS, DIGITS_KEPT = 40, 16, 18
+"""Characters that are read from each end, columns of a place, and digits of the last number of a text."""
 
 DATE_PARTS = ("year", "month", "day", "hour", "minute", "second")
 DATE = re.compile(r"\d{4}-\d{2}-\d{2}([T ]\d{2}:\d{2}(:\d{2})?)?")
@@ -93,7 +110,28 @@ def text_columns(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
         for start, _ in Counter(starts).most_common(MOST_BEGINNINGS):
             found[f"{name} begins with {start!r}"] = np.array([own == start for own in starts], dtype=np.float64)
     found |= _date_columns(name, texts)
+    if values.dtype.kind == "U":
+        found |= _character_columns(name, texts)
     return {column: numbers for column, numbers in found.items() if np.ptp(numbers[np.isfinite(numbers)]) > 0.0}
+
+
+def _character_columns(name: str, texts: list[str]) -> dict[str, np.ndarray]:
+    """Return which characters stand at each place, from both ends, how many are of a kind, and residues of numbers."""
+    found = {}
+    for end, turned in (("", texts), (" from the end", [text[::-1] for text in texts])):
+        for place in range(min(max(map(len, texts)), LONGEST_TEXT)):
+            own = [text[place : place + 1] for text in turned]
+            for character, _ in Counter(own).most_common(MOST_CHARACTERS):
+                column = f"character {place + 1}{end} of {name} is {character!r}"
+                found[column] = np.array([one == character for one in own], dtype=np.float64)
+    kinds = {"digits": str.isdigit, "capitals": str.isupper, "small letters": str.islower, "spaces": str.isspace}
+    for kind, is_kind in kinds.items():
+        found[f"{kind} in {name}"] = np.array([sum(map(is_kind, text)) for text in texts], dtype=np.float64)
+    last = [re.findall(r"\d+", text)[-1:] for text in texts]
+    if all(last):
+        numbers = np.array([int(one[0][-DIGITS_KEPT:]) for one in last])
+        found |= residue_columns(f"the last number of {name}", numbers)
+    return found
 
 
 def _date_columns(name: str, texts: list[str]) -> dict[str, np.ndarray]:
@@ -291,12 +329,12 @@ def condition_layers(measured: MeasuredSet) -> dict[str, tuple[np.ndarray, tuple
 def condition_changes(measured: MeasuredSet, reference: np.ndarray) -> dict[str, tuple[np.ndarray, tuple[str, ...]]]:
     """Return the layers as changes from the reference (records,), undefined without one (-1).
 
-    Of noise what exceeds the lines. The order in the files is not compared: within a gearbox the records of a set stand
-    in the order of its states by design.
+    Of noise what exceeds the lines. Layers with one law for all gearboxes are not compared, nor is the order in the
+    files: within a gearbox the records of a set stand in the order of its states by design.
     """
     known, found = (reference >= 0)[:, None], {}
     for layer, (values, names) in condition_layers(measured).items():
-        if layer != ORDER and values.shape[1]:
+        if layer not in {ORDER, *OF_NO_GEARBOX} and values.shape[1]:
             filled = filled_columns(values)
             found[layer] = np.where(known, filled - filled[reference], np.nan), names
     excess = noise_excess(measured, reference, steady_noise(measured))
@@ -351,6 +389,8 @@ def _texts(measured: MeasuredSet) -> dict[str, np.ndarray]:
     for name, values in measured.labels.items():
         if values.ndim == 1 and values.dtype.kind not in "biuf" and must_not_tell(measured.roles, name):
             found |= text_columns(name, values)
+        if values.ndim == 1 and values.dtype.kind in "iu" and must_not_tell(measured.roles, name):
+            found |= residue_columns(name, values)
         if values.ndim == 1 and values.dtype.kind == "f" and must_not_tell(measured.roles, name):
             found |= digit_columns(name, values)
         if values.ndim == 1 and values.dtype.kind == "f" and measured.roles.get(name) == Role.MEASURED:

@@ -12,7 +12,8 @@ Levels, lags and noise may tell damage, since damage moves them. But what damage
 what a small one moves a larger one moves more, up or down. A gain, a delay or a noise that all damaged states have
 alike moves the smallest as far as the largest. So of them only columns are looked at in which no larger state differs
 from the smallest one; they are found anew in every trial and permutation, on the gearboxes to learn from. A leak that
-grows with the damage is not seen here. Source: derived.
+grows with the damage is not seen here. The floor of a spectrum rises steeply with damage: of its shape the next larger
+state is asked alone. Lines of the mesh do not, and may fall before they rise. Source: derived.
 """
 
 from __future__ import annotations
@@ -43,7 +44,21 @@ from diagnostics.audit.condition_layers import (
 from diagnostics.audit.detectability import Detectability
 from diagnostics.audit.finding import Finding
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
-from diagnostics.audit.raw_records import CLOCK, EDGES, ENDS, LINES, OFFSETS, STORED, TEMPLATES, template_attackers
+from diagnostics.audit.raw_records import (
+    BLOCKS,
+    CLOCK,
+    CODE_LAW,
+    COURSE,
+    EDGES,
+    ENDS,
+    LINES,
+    OFFSETS,
+    PHASES,
+    STORED,
+    TEMPLATES,
+    template_attackers,
+)
+from diagnostics.audit.spectral_shape import shape_changes
 from diagnostics.indicators.background_levels import NOISE_LEVELS
 from diagnostics.judging.evaluation import Entry
 from diagnostics.judging.learners import all_columns, best_column
@@ -63,7 +78,7 @@ TINY = 1e-30
 def sized_states(measured: MeasuredSet) -> list[tuple[str, tuple[str, ...]]]:
     """Return the state of least mean damaged area of every kind of fault, and those of the kind that are much larger.
 
-    Kinds without a larger state are left out.
+    These ascend. Kinds without a larger state are left out.
     """
     labels, found = measured.labels, list[tuple[str, tuple[str, ...]]]()
     if "damaged_area_mm2" not in labels:
@@ -76,32 +91,38 @@ def sized_states(measured: MeasuredSet) -> list[tuple[str, tuple[str, ...]]]:
             for state in dict.fromkeys(states.tolist())
         }
         smallest = min(area, key=lambda state: area[state])
-        larger = tuple(state for state, mean in area.items() if mean >= LARGER * area[smallest] > 0.0)
+        larger = [state for state, mean in area.items() if mean >= LARGER * area[smallest] > 0.0]
         if larger:
-            found.append((smallest, larger))
+            found.append((smallest, tuple(sorted(larger, key=lambda state: area[state]))))
     return found
 
 
 def small_damage_attackers(measured: MeasuredSet, reference: np.ndarray) -> list[Entry]:
-    """Return an attacker for every smallest state, on changes from the reference (records,); -1 without one."""
-    values, names = movable_changes(measured, reference)
-    if not names:
-        return []
-    return [_attacker(measured, *sizes, values, names) for sizes in sized_states(measured)]
+    """Return attackers for every smallest state, on changes from the reference (records,); -1 without one."""
+    movable = _known(movable_changes(measured, reference), reference)
+    floors = _known(shape_changes(measured.raw.floors, reference), reference)
+    found = []
+    for smallest, larger in sized_states(measured):
+        if movable:
+            found.append(_attacker(measured, f"change of {LEVELS}", smallest, larger, movable))
+        if floors:
+            found.append(_attacker(measured, "change of the floor", smallest, larger[:1], floors))
+    return found
 
 
-def movable_changes(measured: MeasuredSet, reference: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Return what damage can move, as changes from the reference, (records, columns), and names."""
+def _known(columns: dict[str, np.ndarray], reference: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the columns that all records with a reference have, undefined in the others (-1)."""
     known = reference >= 0
+    return {name: np.where(known, own, np.nan) for name, own in columns.items() if np.isfinite(own[known]).all()}
+
+
+def movable_changes(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.ndarray]:
+    """Return what damage can move, as changes from the reference, (records,) each, by name."""
     found = {f"change of the {name}": values - values[reference] for name, values in measured.raw.levels.items()}
     for name in (name for name in NOISE_LEVELS if name in measured.values):
         change = measured.values[name] - measured.values[name][reference]
         found |= {f"change of the {name} of {channel}": change[:, k] for k, channel in enumerate(measured.channels)}
-    found |= _mesh_changes(measured, reference)
-    found |= fine_lags(measured, reference)
-    columns = {name: np.where(known, values, np.nan) for name, values in found.items()}
-    columns = {name: values for name, values in columns.items() if known.any() and np.isfinite(values[known]).all()}
-    return (np.stack(list(columns.values()), axis=1) if columns else np.empty((0, 0))), tuple(columns)
+    return found | _mesh_changes(measured, reference) | fine_lags(measured, reference)
 
 
 def _mesh_changes(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.ndarray]:
@@ -148,14 +169,15 @@ class _LikeLarger:
 
 
 def _attacker(
-    measured: MeasuredSet, smallest: str, larger_states: tuple[str, ...], values: np.ndarray, names: tuple[str, ...]
+    measured: MeasuredSet, name: str, smallest: str, larger_states: tuple[str, ...], columns: dict[str, np.ndarray]
 ) -> Entry:
+    values, names = np.stack(list(columns.values()), axis=1), tuple(columns)
     state = measured.labels["state"]
     defined = np.isfinite(values).all(axis=1)
-    larger = [np.flatnonzero(defined & (state == one)) for one in larger_states]
     usable = defined & (measured.healthy | (state == smallest))
+    larger = [np.flatnonzero(defined & (state == one)) for one in larger_states]
     make = partial(_LikeLarger, values, names, larger, measured.labels["specimen_id"])
-    return Entry(f"change of {LEVELS}", make, np.arange(len(values)), usable, len(names))
+    return Entry(name, make, np.arange(len(values)), usable, len(names))
 
 
 def _alike(larger: np.ndarray, learnt: np.ndarray, positive: np.ndarray) -> np.ndarray:
@@ -194,6 +216,10 @@ MENDS = {
     OFFSETS: "Send all states through one amplifier, and take means off all or none.",
     LINES: "Record all states in one place, with the same machines and supplies near.",
     STORED: "Send all states through one converter and one program, which keep every sample as it was.",
+    CODE_LAW: "Send all states through one converter and one program, which round every sample alike.",
+    COURSE: "Record all states with gains that stay as they are.",
+    PHASES: "Start records at any time of the machines near, in all states.",
+    BLOCKS: "Record all states without losing samples between blocks.",
     ENDS: "Draw noise per gearbox by one law for all states, and filter all states alike.",
     CLOCK: "Record the tacho with the channels, by one clock, in all states.",
     TEMPLATES: "Add nothing to records that stands at the same time in several of them.",

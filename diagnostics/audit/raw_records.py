@@ -18,11 +18,18 @@ equal bands to the last bin below half the rate. They accuse where they tell a s
   converter, of which small differences are equally frequent, however strong a signal is; samples as large as the
   largest, whose end does not count where several records reach it; ranks of the first and the last difference; runs
   around large samples ("marks"), by which two records that share them bit by bit are found, wherever they stand.
+* Codes: the law of what a converter gives (`stored_codes`).
+* Course: how the level of a record goes over its time, by a straight line and two cosines and sines, in the median bin
+  of a spectrum, so that no line rules it, and in the roughest part. Records start at a random angle, so neither a gear
+  nor its damage has a course of its own.
+* Blocks: the roughness of samples at the edges of blocks of equal length, beside that at all other places.
+* Phases: of lines of orders that are no whole ones, from the first pulse on, those that have most of an angle in common
+  in the set. What turns with another machine has no angle of its own against the gears.
 * Templates: what is alike in records at the same time after their first sample. On the average over records a machine
   adds nothing to a sample, however damaged. A spectrum is divided by its own floor, since strong lines would hide what
   is alike, and cut where lines stand out. Four parts of it, of two octaves each but the lowest, are products of their
   own: one tone is lost among all lines. The course of the level is the power of 64 parts of the record in decibels,
-  less their mean.
+  less their mean. A second spectrum begins at the first pulse.
 
 Source: derived.
 """
@@ -31,13 +38,15 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import combinations, pairwise
 
 import numpy as np
 
+from diagnostics.audit.spectral_shape import floor_levels
+from diagnostics.audit.stored_codes import code_law
 from diagnostics.judging.evaluation import Entry
 from diagnostics.judging.learners import GroupRidge
 from diagnostics.records.channel_quantities import RECORDED
@@ -78,7 +87,59 @@ def edge_ranks(signal: np.ndarray) -> dict[str, float]:
 def offsets(signal: np.ndarray) -> dict[str, float]:
     """Return the mean of samples (n,) float64, and by how much a straight line rises over the record."""
     course = np.linspace(-0.5, 0.5, signal.size) if signal.size > 1 else np.zeros(signal.size)
-    return {"mean": float(signal.mean()), "rise": 12.0 * float(np.mean(signal * course))}
+    mean = float(signal.mean())
+    return {"mean": mean, "size of the mean": abs(mean), "rise": 12.0 * float(np.mean(signal * course))}
+
+
+PIECES, FRAME = 2, 1024
+"""Cosines and sines of a course, beside a straight line, and samples of a frame."""
+
+
+def course_numbers(signal: np.ndarray) -> dict[str, float]:
+    """Return how the level of samples (n,) float64 goes over time, by name [dB]; none with too few frames.
+
+    Median over the bins of a spectrum; and of fourth differences, which are noise for the most part.
+    """
+    from scipy import fft
+
+    frames = signal[: signal.size // FRAME * FRAME].reshape(-1, FRAME) * np.hanning(FRAME)
+    if len(frames) < 4 * PIECES:
+        return {}
+    bins = 20.0 * np.log10(np.abs(fft.rfft(frames, axis=1))[:, 4:-4] + TINY)
+    rough = level_course(np.diff(signal, 4)).astype(np.float64)[:, None]
+    found = {}
+    for what, course in (("level", bins), ("noise", rough)):
+        time = (np.arange(len(course)) + 0.5) / len(course)
+        parts = {"rise": 12.0 * (time - 0.5)}
+        for k in range(1, PIECES + 1):
+            parts |= {
+                f"cosine {k}": 2.0 * np.cos(2 * np.pi * k * time),
+                f"sine {k}": 2.0 * np.sin(2 * np.pi * k * time),
+            }
+        for name, wave in parts.items():
+            found[f"{name} of the {what}"] = float(np.median(wave @ course) / time.size)
+    return found
+
+
+BLOCK_LENGTHS = (100, 128, 250, 256, 500, 512, 1000, 1024, 2000, 2048, 4096)
+FEWEST_BLOCKS = 4
+
+
+def block_edges(signal: np.ndarray) -> dict[str, float]:
+    """Return by how many standard deviations blocks of samples (n,) float64 are rougher at their ends than elsewhere.
+
+    The first samples of the first block, which every record has, do not count.
+    """
+    bent = np.log(np.square(np.diff(signal, 4)) + TINY)  # bent[k] is of the samples around k + 2
+    bent -= bent.mean()
+    spread, found = float(bent.std()) + TINY, {}
+    for length in BLOCK_LENGTHS:
+        edges = np.arange(length, signal.size - 4, length) - 2
+        if edges.size >= FEWEST_BLOCKS:
+            for name, apart in (("last", -1), ("first", 0)):
+                rough = float(bent[edges + apart].mean() / spread * math.sqrt(edges.size))
+                found[f"{name} of every {length} samples"] = rough
+    return found
 
 
 def rank_of_first(values: np.ndarray) -> float:
@@ -267,6 +328,20 @@ def pulse_roughness(pulses_s: np.ndarray) -> float:
     return float(np.log10(third.std() + 1e-12)) if third.size > 1 else math.nan
 
 
+GRIDS_S = (1e-3, 1e-4, 1e-5, 1e-6)
+
+
+def pulse_grids(pulses_s: np.ndarray, fs_hz: float) -> dict[str, float]:
+    """Return how far pulses (k,) [s] lie from grids of round times, and of the samples, over what chance gives."""
+    grids = {f"{grid_s:g} s": grid_s for grid_s in GRIDS_S} | {"the samples": 1.0 / fs_hz}
+    shares = {name: np.asarray(pulses_s, dtype=np.float64) / grid_s for name, grid_s in grids.items()}
+    return {
+        f"distance of the pulses from {name}": 4.0 * float(np.mean(np.abs(share - np.round(share))))
+        for name, share in shares.items()
+        if share.size
+    }
+
+
 MARKED_PARTS, MARK_REACH, FEWEST_VALUES = 32, 8, 12
 """Runs of 17 samples around the largest of every part; one of fewer values, such as a clipped one, marks nothing."""
 
@@ -348,25 +423,57 @@ def sample_marks(signal: np.ndarray) -> set[int]:
 
 
 TEMPLATES = "templates"
-TEMPLATE_SAMPLES, AROUND = 16384, 32
+TEMPLATE_SAMPLES, AROUND, TEMPLATE_TURNS = 16384, 32, 16
 LARGEST_CODE, CODES = 4.0, 31.0
 """Times its floor up to which a line counts, and codes per floor: a byte holds them."""
 
 COURSE_PARTS = 64
-BANDS = (0, 1 / 64, 1 / 16, 1 / 4, 1)
-"""Edges of the parts of a spectrum, in shares of half the rate."""
+IN_PARTS, BANDS = "spectra", (0, 1 / 64, 1 / 16, 1 / 4, 1)
+"""What has parts, and the edges of the parts of a spectrum, in shares of half the rate."""
 
 
 def whitened_codes(signal: np.ndarray) -> np.ndarray:
     """Return the spectrum of the first samples (n,) over its floor, real and imaginary part, (2, k) int8."""
     from scipy import fft
 
-    piece = signal[:TEMPLATE_SAMPLES]
-    lines = fft.rfft((piece - piece.mean()) * np.hanning(piece.size))[1:]
+    return _codes_of_lines(fft.rfft(_windowed(signal[:TEMPLATE_SAMPLES]))[1:])
+
+
+def order_codes(signal: np.ndarray, fs_hz: float, pulses_s: np.ndarray) -> np.ndarray:
+    """Return the same over 16 turns of the shaft from the first pulse on, without its whole orders, (2, k) int8.
+
+    Parameters
+    ----------
+    signal : (n,) float64
+    fs_hz : float
+        Sampling frequency [Hz].
+    pulses_s : (k,) float64
+        One per turn [s]; with too few nothing is left.
+    """
+    from scipy import fft
+
+    if pulses_s.size <= TEMPLATE_TURNS:
+        return np.zeros((2, 0), np.int8)
+    turns = np.arange(TEMPLATE_SAMPLES) * (TEMPLATE_TURNS / TEMPLATE_SAMPLES)
+    times_s = np.interp(turns, np.arange(pulses_s.size), pulses_s)
+    piece = np.interp(times_s * fs_hz, np.arange(signal.size), signal)
+    lines = fft.rfft(_windowed(piece))[1:]
+    place = np.arange(1, lines.size + 1) % TEMPLATE_TURNS
+    return _codes_of_lines(lines, np.minimum(place, TEMPLATE_TURNS - place) > NEAR_ORDER_BINS)
+
+
+def _windowed(piece: np.ndarray) -> np.ndarray:
+    return np.asarray((piece - piece.mean()) * np.hanning(piece.size))
+
+
+def _codes_of_lines(lines: np.ndarray, kept: np.ndarray | None = None) -> np.ndarray:
+    """Return lines over the floor around them in codes; those that are not kept give zeros."""
     lines = lines[: lines.size // AROUND * AROUND].reshape(-1, AROUND)
     floor = np.sqrt(np.median(np.square(np.abs(lines)), axis=1, keepdims=True) / np.log(2.0)) + TINY
     over = lines / floor
     over /= np.maximum(np.abs(over) / LARGEST_CODE, 1.0)
+    if kept is not None:
+        over *= kept[: over.size].reshape(over.shape)
     return np.round(CODES * np.stack([over.real, over.imag])).astype(np.int8).reshape(2, -1)
 
 
@@ -380,24 +487,51 @@ def level_course(signal: np.ndarray) -> np.ndarray:
     return np.asarray(decibels - decibels.mean(), dtype=np.float32)
 
 
-def template_products(codes: list[np.ndarray], courses: list[np.ndarray]) -> dict[str, np.ndarray]:
+def template_products(codes: Mapping[str, list[np.ndarray]], courses: list[np.ndarray]) -> dict[str, np.ndarray]:
     """Return the products of all pairs of records, (records, records), by what they are of.
 
     Parameters
     ----------
-    codes : (records) of (2 channels, k) int8
-        Zero is put for records that are shorter than the longest.
+    codes : mapping of str to (records) of (2 channels, k) int8
+        By what they are of. Zero is put for records that are shorter than the longest.
     courses : (records) of (channels * 64,) float32
     """
-    size, found = max(row.shape[1] for row in codes), {}
-    rows = np.flatnonzero([row.shape[1] == size for row in codes])
-    for low, high in pairwise(round(edge * size) for edge in BANDS):
-        part = np.stack([codes[row][:, low:high].ravel() for row in rows.tolist()]).astype(np.float32) / CODES
-        product = np.zeros((len(codes), len(codes)))
-        product[np.ix_(rows, rows)] = part @ part.T / max(part.shape[1], 1)
-        found[f"spectra, lines {low} to {high}"] = product
+    found = {}
+    for what, own in codes.items():
+        size = max(row.shape[1] for row in own)
+        rows = np.flatnonzero([row.shape[1] == size for row in own])
+        for low, high in pairwise(round(edge * size) for edge in (BANDS if what == IN_PARTS else (0, 1))):
+            part = np.stack([own[row][:, low:high].ravel() for row in rows.tolist()]).astype(np.float32) / CODES
+            product = np.zeros((len(own), len(own)))
+            product[np.ix_(rows, rows)] = part @ part.T / max(part.shape[1], 1)
+            found[f"{what}, lines {low} to {high}"] = product
     every = np.stack(courses).astype(np.float64)
     return {**found, "courses of the level": every @ every.T}
+
+
+def phase_columns(orders: list[np.ndarray]) -> dict[str, np.ndarray]:
+    """Return both parts of the lines that have most of an angle in common, (records,) float64 each, by name.
+
+    Parameters
+    ----------
+    orders : (records) of (2 channels, k) int8
+        As of `order_codes`; shorter ones are left undefined.
+    """
+    size = max(row.shape[1] for row in orders)
+    every = np.full((len(orders), orders[0].shape[0], size), np.nan)
+    for place, row in enumerate(orders):
+        if row.shape[1] == size:
+            every[place] = row
+    found, known = {}, every[np.isfinite(every).all(axis=(1, 2))]
+    for channel in range(every.shape[1] // 2 if known.size else 0):
+        parts = slice(2 * channel, 2 * channel + 2)
+        common = np.square(known[:, parts].sum(axis=0)).sum(axis=0)
+        common /= np.square(known[:, parts]).sum(axis=(0, 1)) + 1.0
+        for line in np.argsort(-common, kind="stable")[:KEPT_LINES].tolist():
+            order = (line + 1) / TEMPLATE_TURNS
+            for name, part in zip(("real", "imaginary"), every[:, parts, line].T, strict=True):
+                found[f"{name} part at order {order:.7g} of channel {channel + 1}"] = part
+    return found
 
 
 def template_attackers(products: dict[str, np.ndarray]) -> list[Entry]:
@@ -410,6 +544,10 @@ def template_attackers(products: dict[str, np.ndarray]) -> list[Entry]:
 
 
 EDGES, OFFSETS, LINES, STORED, ENDS, CLOCK = "edges", "offsets", "lines", "samples", "ends", "clock"
+CODE_LAW, COURSE, BLOCKS, PHASES = "codes", "course", "blocks", "phases"
+OF_NO_GEARBOX = frozenset({CODE_LAW, COURSE, BLOCKS, PHASES})
+"""Layers that have one law for all gearboxes: beside a reference they only scatter more."""
+
 EIGHTHS = 8
 
 
@@ -429,6 +567,8 @@ class RawColumns:
         Sampling frequency [Hz].
     templates : dict of str to (records, records) float64
         Products of records, of what stands at fixed times, by what it is.
+    floors : dict of str to (records, 64) float32
+        Power of bands by channel, as of `diagnostics.audit.spectral_shape.floor_levels` [dB].
     """
 
     layers: dict[str, dict[str, np.ndarray]] = field(default_factory=dict)
@@ -436,6 +576,7 @@ class RawColumns:
     marks: list[frozenset[int]] = field(default_factory=list)
     fs_hz: float = math.nan
     templates: dict[str, np.ndarray] = field(default_factory=dict)
+    floors: dict[str, np.ndarray] = field(default_factory=dict)
 
     def of(self, rows: np.ndarray) -> RawColumns:
         """Return the numbers of some records, by their rows (k,) int."""
@@ -445,6 +586,7 @@ class RawColumns:
             levels={name: values[rows] for name, values in self.levels.items()},
             marks=[self.marks[row] for row in rows.tolist()] if self.marks else [],
             templates={what: product[np.ix_(rows, rows)] for what, product in self.templates.items()},
+            floors={name: levels[rows] for name, levels in self.floors.items()},
         )
 
 
@@ -457,7 +599,10 @@ class _RawRecord:
     levels: dict[str, float]
     marks: frozenset[int]
     codes: np.ndarray
+    from_pulse: np.ndarray
+    orders: np.ndarray
     course: np.ndarray
+    floors: dict[str, np.ndarray]
 
 
 def raw_columns(records: Iterable[Recording]) -> RawColumns:
@@ -471,21 +616,33 @@ def raw_columns(records: Iterable[Recording]) -> RawColumns:
     layers = {layer: _columns([one.layers[layer] for one in found]) for layer in found[0].layers}
     layers[STORED] = without_ends(layers[STORED])
     layers[LINES] = line_columns([one.lines for one in found])
-    templates = template_products([one.codes for one in found], [one.course for one in found])
-    return RawColumns(layers, _columns([one.levels for one in found]), [one.marks for one in found], fs_hz, templates)
+    layers[PHASES] = phase_columns([one.orders for one in found])
+    codes = {
+        IN_PARTS: [one.codes for one in found],
+        "spectra from the first pulse": [one.from_pulse for one in found],
+    }
+    templates = template_products(codes, [one.course for one in found])
+    floors = {name: np.stack([one.floors[name] for one in found]) for name in found[0].floors}
+    levels, marks = _columns([one.levels for one in found]), [one.marks for one in found]
+    return RawColumns(layers, levels, marks, fs_hz, templates, floors)
 
 
 def _raw_record(record: Recording) -> _RawRecord:
     held = {name: np.asarray(signal, dtype=np.float64) for name, signal in record.channels.items()}
     rates, teeth = shaft_rates_hz(record), record.teeth[0]
     accelerations = {name: x for name, x in held.items() if _is_acceleration(record, name)}
+    first = round(float(record.tacho_s[0]) * record.fs_hz) if record.tacho_s.size else 0
     layers = {
         EDGES: {f"{what} of {name}": rank for name, x in held.items() for what, rank in edge_ranks(x).items()},
         OFFSETS: {f"{what} of {name}": v for name, x in accelerations.items() for what, v in offsets(x).items()},
         STORED: {f"{what} of {name}": v for name, x in held.items() for what, v in stored_numbers(x).items()},
+        CODE_LAW: code_law(record.channels),
+        COURSE: {f"{what} of {name}": v for name, x in held.items() for what, v in course_numbers(x).items()},
+        BLOCKS: {f"{what} of {name}": v for name, x in held.items() for what, v in block_edges(x).items()},
         ENDS: quiet_ends(held, record.fs_hz),
         CLOCK: {
             "roughness of the pulses": pulse_roughness(record.tacho_s),
+            **pulse_grids(record.tacho_s, record.fs_hz),
             **{f"drift of {name}": clock_drift(x, record.fs_hz, record.tacho_s, teeth) for name, x in held.items()},
         },
     }
@@ -495,7 +652,10 @@ def _raw_record(record: Recording) -> _RawRecord:
         {f"{what} of {name}": level for name, x in held.items() for what, level in raw_levels(x).items()},
         frozenset(mark for signal in record.channels.values() for mark in sample_marks(signal)),
         np.concatenate([whitened_codes(x) for x in held.values()]),
+        np.concatenate([whitened_codes(x[first : first + TEMPLATE_SAMPLES // 2]) for x in held.values()]),
+        np.concatenate([order_codes(x, record.fs_hz, record.tacho_s) for x in held.values()]),
         np.concatenate([level_course(x) for x in held.values()]),
+        {name: floor_levels(x) for name, x in held.items()},
     )
 
 

@@ -18,7 +18,7 @@ import yaml
 from siggen.columns.drivetrain import GearTrain
 from siggen.columns.record import TACHO_COLUMN, ChannelColumn, signal_matrix
 from siggen.dataset.inventory import Inventory, ListedColumn, ListedShard, PromisedFile
-from siggen.dataset.manifest import CARD, CONFIG, read_manifest
+from siggen.dataset.manifest import BLIND, CARD, CONFIG, INJECTED, read_manifest
 from siggen.dataset.object_name import DAMAGE, LABELS, LIFE_FOLDER, SPLITS, life_name
 from siggen.dataset.shard import ABOUT, columns_of, unpacked
 from siggen.dataset.storage import HOW_TO_GO_ON, Storage
@@ -106,6 +106,11 @@ class Dataset:
             If it does not exist.
         """
         return Split(self, *self._splits(split))
+
+    @property
+    def is_simulated(self) -> bool:
+        """Whether siggen can make its records again; not of recordings, and of those whose seed is secret."""
+        return not {INJECTED, BLIND} & self.files.keys()
 
     def role(self, name: str) -> Role:
         """Return the role of a column of records; one that the set does not list is a condition."""

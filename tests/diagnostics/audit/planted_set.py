@@ -31,6 +31,7 @@ class PlantedSet(ListedRoles):
     path: Path = Path("planted")
     config: dict[str, Any] = field(default_factory=dict)
     manifest: dict[str, Any] = field(default_factory=lambda: {"identity": "0" * 64})
+    is_simulated: bool = True
     fs_hz: float = FS_HZ
     duration_s: float = DURATION_S
     splits: tuple[str, ...] = ("all",)

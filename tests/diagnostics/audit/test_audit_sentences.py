@@ -121,3 +121,9 @@ def test_the_card_says_lost_only_where_the_strongest_attacker_stays_below_chance
     found = replace(AUDIT, best={"mild": replace(BEST["mild"], held_out=0.8)})
     assert verdict_words(found, "mild") == "can be found, best by the best single indicator (0.80)"
     assert verdict_words(replace(AUDIT, detections={}, best={}), "mild") == "not judged"
+
+
+def test_a_set_that_can_be_made_again_is_verified_first() -> None:
+    assert not any("siggen verify" in sentence for sentence in audit_summary(AUDIT))
+    said = audit_summary(replace(AUDIT, made_again="siggen verify SET --sample 10"))
+    assert said[1].startswith("First run `siggen verify SET --sample 10`")

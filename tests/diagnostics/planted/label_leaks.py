@@ -97,11 +97,17 @@ def _with_numbers(rows: pa.Table, name: str, values: np.ndarray) -> pa.Table:
 
 
 def _with_texts(rows: pa.Table, damaged: np.ndarray, name: str, text: Callable[[int, bool], str]) -> pa.Table:
-    """Add a column of texts; `text` makes one of a record's id and whether it is damaged."""
+    return with_column(rows, damaged, name, text, pa.string())
+
+
+def with_column(
+    rows: pa.Table, damaged: np.ndarray, name: str, value: Callable[[int, bool], object], kind: pa.DataType
+) -> pa.Table:
+    """Add a column; `value` makes one of a record's id and whether it is damaged."""
     meaning = {"meaning": "as the operator wrote it", "role": "provenance"}
-    field = pa.field(name, pa.string(), nullable=False, metadata=meaning)
-    texts = [text(i, bool(d)) for i, d in zip(rows["record_id"].to_pylist(), damaged, strict=True)]
-    return rows.add_column(rows.schema.get_field_index("start_angle_rad"), field, pa.array(texts))
+    field = pa.field(name, kind, nullable=False, metadata=meaning)
+    values = [value(i, bool(d)) for i, d in zip(rows["record_id"].to_pylist(), damaged, strict=True)]
+    return rows.add_column(rows.schema.get_field_index("start_angle_rad"), field, pa.array(values, kind))
 
 
 LABEL_LEAKS: dict[str, Leak] = {

@@ -13,10 +13,14 @@ import pytest
 import siggen
 from tests.command import command
 from tests.dataset.fake_set import STEP_M_S2, file_bytes, write_fake_set
+from tests.diagnostics.planted.further_leaks import FURTHER_LEAKS
 from tests.diagnostics.planted.label_leaks import LABEL_LEAKS
 from tests.diagnostics.planted.leak import Leak
 from tests.diagnostics.planted.planted_copy import channel_columns, converter_step, damaged, planted, planted_copy
 from tests.diagnostics.planted.signal_leaks import SIGNAL_LEAKS
+
+IN_SIGNALS = [*SIGNAL_LEAKS.values(), *(leak for leak in FURTHER_LEAKS.values() if not leak.labels)]
+IN_LABELS = [*LABEL_LEAKS.values(), *(leak for leak in FURTHER_LEAKS.values() if leak.labels)]
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +65,7 @@ def test_labels_keep_the_order_of_the_signals(source: Path, tmp_path: Path) -> N
 def test_every_leak_in_signals_stays_on_the_converters_grid_and_off_healthy_records(source: Path) -> None:
     before, names = rows(source, "data"), channel_columns(source)
     assert {converter_step(np.asarray(row.values)) for name in names for row in before[name]} == {STEP_M_S2}
-    for leak in SIGNAL_LEAKS.values():
+    for leak in IN_SIGNALS:
         after = planted(before, leak, names, fs_hz=5120.0)
         expected = np.ones(before.num_rows, bool) if leak.is_for_all else damaged(before)
         changed = [
@@ -78,7 +82,7 @@ def test_every_leak_in_labels_changes_labels_or_their_order_alone(source: Path) 
         index = before.schema.get_field_index(name)
         before = before.set_column(index, before.schema.field(index), pc.add(before[name], 0.123456789))
     ids = before["record_id"].to_pylist()
-    for leak in LABEL_LEAKS.values():
+    for leak in IN_LABELS:
         after = planted(before, leak, [], fs_hz=5120.0)
         assert _text(after) != _text(before), leak.name
         assert sorted(after["record_id"].to_pylist()) == ids, leak.name
