@@ -19,7 +19,7 @@ def first_draws(seed: int, stage: Stream, *owner: int) -> tuple[int, ...]:
     return tuple(int(x) for x in generator(seed, stage, *owner).integers(0, 2**64, size=2, dtype=np.uint64))
 
 
-@given(st.integers(0, 2**63 - 1), st.sampled_from(list(Stream)), st.data())
+@given(st.integers(0, 2**128 - 1), st.sampled_from(list(Stream)), st.data())
 def test_the_same_owner_gets_the_same_stream(seed, stage, data):
     owner = data.draw(st.tuples(*[KEYS] * OWNER_KEYS[stage]))
     assert first_draws(seed, stage, *owner) == first_draws(seed, stage, *owner)

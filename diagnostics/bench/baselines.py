@@ -23,6 +23,7 @@ from diagnostics.base.extras import missing_packages
 from diagnostics.base.process_pool import process_pool
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.base.single_thread import single_thread
+from diagnostics.bench.conditions import is_alone
 from diagnostics.indicators.classifier_table import check_table, classifier_table, feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.table import record_table
@@ -55,6 +56,8 @@ class BenchRecords:
         Row of the first healthy record of the gearbox at its operating point, -1 for itself.
     asked : (records,) bool
         Records to learn from, and those of the split test of test parts.
+    alone : (records,) bool
+        Records to learn from, and those of test parts of which a gearbox has one record.
     learn : int
         How many records are to learn from.
     channels : tuple of str
@@ -66,6 +69,7 @@ class BenchRecords:
     lines: np.ndarray
     reference: np.ndarray
     asked: np.ndarray
+    alone: np.ndarray
     learn: int
     channels: tuple[str, ...]
     teeth: str
@@ -123,7 +127,9 @@ def benchmark_records(benchmark: Benchmark, workers: int) -> BenchRecords:
     orders = max(lines.size for row in waveforms[:count] for lines in row)
     asked = (np.arange(len(matrix.values)) < count) | (labels["split"] == "test")
     lines = line_array(waveforms)[..., : max(orders, 1)]
-    return BenchRecords(matrix, lines, _references(labels), asked, count, first.channels, first.teeth[0])
+    ways = [True, *map(is_alone, benchmark.parts)]
+    alone = np.repeat(ways, [len(one.values) for one in matrices])
+    return BenchRecords(matrix, lines, _references(labels), asked, alone, count, first.channels, first.teeth[0])
 
 
 def _references(labels: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -145,7 +151,7 @@ def seen_records(records: BenchRecords, *, referenced: bool) -> SeenRecords:
     referenced : bool
         Whether every record stands beside a healthy one of its gearbox.
     """
-    kept = np.flatnonzero(records.asked & (records.reference >= 0) if referenced else records.asked)
+    kept = np.flatnonzero(records.asked & (records.reference >= 0 if referenced else records.alone))
     matrix, lines = records.matrix.rows(kept), records.lines[kept]
     teeth, learn = matrix.labels[records.teeth], int((kept < records.learn).sum())
     difference, known, beside = residual_lines(lines, teeth), None, None

@@ -6,7 +6,7 @@ Sizes: two unlike detectors that differ by an AUC of 0.05 need 135 to 177 paired
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -61,6 +61,26 @@ class Tier:
 
 
 TIERS: Mapping[str, Tier] = {"tiny": Tier(12, 6), "small": Tier(60, 24), "full": Tier(300, 180)}
+
+
+ALONE = "_alone"
+"""Ending of a part of which each gearbox has one record and no reference."""
+
+
+def is_alone(part: str) -> bool:
+    """Return whether records of a part are judged by themselves; asked records of one gearbox would tell each other."""
+    return part.endswith(ALONE)
+
+
+def parts_of(parts: Sequence[str], *, referenced: bool) -> tuple[str, ...]:
+    """Return the test parts that a track asks, by whether it uses references; all where none is judged alone."""
+    split = any(map(is_alone, parts))
+    return tuple(name for name in parts if not split or is_alone(name) != referenced)
+
+
+def with_alone(conditions: Mapping[str, Mapping[str, Any]]) -> dict[str, Mapping[str, Any]]:
+    """Return conditions, and each again for gearboxes of which one record is shown."""
+    return {**conditions, **{f"{name}{ALONE}": changes for name, changes in conditions.items()}}
 
 
 def changed(config: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:

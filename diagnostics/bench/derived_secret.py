@@ -49,8 +49,8 @@ def derived(secret: bytes, *words: object) -> bytes:
 
 
 def seed_of(secret: bytes, part: str) -> int:
-    """Return the seed of a part, 63 bits."""
-    return int.from_bytes(derived(secret, "seed", part)[:8], "big") >> 1
+    """Return the seed of a part, 128 bits: more than can be tried until a draw fits what is published."""
+    return int.from_bytes(derived(secret, "seed", part)[:16], "big")
 
 
 def shuffled(secret: bytes, what: str, ids: Iterable[int]) -> list[int]:

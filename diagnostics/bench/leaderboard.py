@@ -7,9 +7,11 @@ so the mean over parts is taken resample by resample.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
@@ -17,7 +19,9 @@ import pyarrow as pa
 
 from diagnostics.base.beside import beside
 from diagnostics.base.extras import missing_packages
-from diagnostics.bench.baselines import REFERENCE
+from diagnostics.base.seeding import Purpose, generator
+from diagnostics.bench.baselines import CHANCE_OWNER, REFERENCE
+from diagnostics.bench.conditions import parts_of
 from diagnostics.bench.question import Ranking
 from diagnostics.bench.questions import question_of
 from diagnostics.page.blocks import (
@@ -34,18 +38,20 @@ from diagnostics.page.blocks import (
 from diagnostics.page.style import png_bytes
 from diagnostics.page.tables import interval_cell
 from diagnostics.page.template import write_page
-from diagnostics.page.wording import capitalised, minus
+from diagnostics.page.wording import capitalised, decimal, minus
 from diagnostics.scoring.benchmark import BASELINES, Benchmark, labels_of, open_benchmark
 from diagnostics.scoring.benchmark_scores import JudgedPart, judged_parts, part_columns
 from diagnostics.scoring.prediction_file import CLASSIFIER, PREDICTIONS_FILE, prediction_table
 from diagnostics.scoring.score_rows import ScoreRow, score_figure
 from diagnostics.statistics.evaluation import RESAMPLES, Interval, area_interval, bootstrap_weights, interval
-from siggen.errors import UsageError
+from siggen.errors import UsageError, counted
 from siggen.file_writing import write_file
 from siggen.plain_json import json_text
 
 BOARD, NUMBERS = "leaderboard.html", "leaderboard.json"
 MEAN = "mean"
+BLIND_ANSWERS, LEVEL = 200, 0.95
+"""Answers without knowledge whose scatter is taken, known to 5 %, and the level of the limit of the best."""
 SUFFIXES = (".parquet", ".csv")
 
 
@@ -109,7 +115,11 @@ def leaderboard(
     benchmark = open_benchmark(folder)
     parts = judged_parts(benchmark, labels_of(benchmark, Path(labels) if labels else None))
     judged = board_entries(benchmark, parts, Path(entries) if entries else None, seed)
-    return write_board(benchmark, judged, Path(out) if out else beside(benchmark.path, "_board"))
+    ranking, spread = ranking_of(benchmark), {}
+    for side in ranking.tracks:
+        names = parts_of(benchmark.parts, referenced=side)
+        spread[side] = chance_spread(ranking, [one for one in parts if one.name in names], seed)
+    return write_board(benchmark, judged, spread, Path(out) if out else beside(benchmark.path, "_board"))
 
 
 def board_entries(
@@ -139,10 +149,42 @@ def board_entries(
         for name in dict.fromkeys(name for by_name in columns.values() for name in by_name):
             if name in found:
                 raise UsageError(f"{file}: a second entry {name!r}; give each a name of its own (column {CLASSIFIER})")
-            answers = {part: by_name[name] for part, by_name in columns.items() if name in by_name}
             referenced = True in ranking.tracks and _is_referenced(read, name)
+            names = parts_of(benchmark.parts, referenced=referenced)
+            answers = {part: by_name[name] for part, by_name in columns.items() if name in by_name and part in names}
             found[name] = _entry(name, ranking, referenced, answers, parts, weights)
     return list(found.values())
+
+
+def chance_spread(ranking: Ranking, parts: Sequence[JudgedPart], seed: int) -> float:
+    """Return the standard deviation of the mean score of answers without knowledge; NaN of errors in hours.
+
+    Parameters
+    ----------
+    ranking : Ranking
+    parts : sequence of JudgedPart
+    seed : int
+        Of the answers.
+    """
+    if not ranking.measure.is_share:
+        return math.nan
+    means = np.zeros(BLIND_ANSWERS)
+    for place, part in enumerate(parts):
+        rng = generator(seed, Purpose.PERMUTATION, CHANCE_OWNER, place)
+        asked = ranking.task.parts(part.truth)[ranking.records]
+        truth, once = part.truth.rows(asked), np.ones((1, int(asked.sum())))
+        own = [ranking.measure.samples(rng.uniform(size=once.size), truth, once)[0] for _ in means]
+        means += np.array(own) / len(parts)
+    return float(np.std(means, ddof=1))
+
+
+def best_by_chance(entries: int, spread: float) -> float:
+    """Return the AUC that the best of so many entries without knowledge exceeds in 5 % of the cases.
+
+    Means over parts are normal for the purpose; entries are independent, which leaves the limit on the safe side for
+    those that resemble each other. Source: maximum of independent numbers, standard literature.
+    """
+    return 0.5 + spread * NormalDist().inv_cdf(LEVEL ** (1.0 / entries))
 
 
 def ranking_of(benchmark: Benchmark) -> Ranking:
@@ -180,18 +222,43 @@ def _entry(
     return BoardEntry(name, referenced, ranking, found[ranking.records], found[ranking.leak], counts, chance)
 
 
-def write_board(benchmark: Benchmark, entries: Sequence[BoardEntry], folder: Path) -> Path:
-    """Write the page, and its numbers beside it; return the page."""
+def write_board(
+    benchmark: Benchmark, entries: Sequence[BoardEntry], spread: Mapping[bool, float], folder: Path
+) -> Path:
+    """Write the page, and its numbers beside it; return the page.
+
+    Parameters
+    ----------
+    benchmark : Benchmark
+    entries : sequence of BoardEntry
+    spread : mapping of bool to float
+        As of `chance_spread`, by track.
+    folder : Path
+    """
     ranking = ranking_of(benchmark)
-    tables = {referenced: _ordered(entries, benchmark.parts, referenced) for referenced in ranking.tracks}
+    tables = {side: _ordered(entries, parts_of(benchmark.parts, referenced=side), side) for side in ranking.tracks}
     numbers = [row for ordered in tables.values() for row in _numbers(ordered, benchmark)]
-    facts = {"digest": benchmark.digest, "simulation_version": benchmark.simulation_version, "entries": numbers}
+    limits = {
+        ranking.tracks[side]: {"entries": len(ordered), "best_by_chance": best_by_chance(len(ordered), spread[side])}
+        for side, ordered in tables.items()
+        if ordered and spread[side] > 0.0
+    }
+    facts = {
+        "digest": benchmark.digest,
+        "simulation_version": benchmark.simulation_version,
+        "counted": limits,
+        "entries": numbers,
+    }
     write_file(folder / NUMBERS, json_text(facts))
     title = f"Leaderboard of {benchmark.title}, {benchmark.tier}"
-    parts: list[Block] = [Heading(title, 1), *summary_blocks(_sentences(benchmark, tables))]
+    parts: list[Block] = [Heading(title, 1), *summary_blocks(_sentences(benchmark, tables, spread))]
     for referenced, ordered in tables.items():
         if ordered:
-            parts += [Heading(ranking.tracks[referenced]), _figure(ordered), *_table(ordered, benchmark.parts)]
+            parts += [
+                Heading(ranking.tracks[referenced]),
+                _figure(ordered),
+                *_table(ordered, parts_of(benchmark.parts, referenced=referenced)),
+            ]
     path = folder / BOARD
     write_page(path, Page(title, parts))
     return path
@@ -208,14 +275,30 @@ def _goodness(entry: BoardEntry) -> float:
     return float(entry.samples(MEAN)[0]) * (-1.0 if entry.ranking.measure.falls else 1.0)
 
 
-def _sentences(benchmark: Benchmark, tables: Mapping[bool, list[BoardEntry]]) -> list[str]:
+def _sentences(
+    benchmark: Benchmark, tables: Mapping[bool, list[BoardEntry]], spread: Mapping[bool, float]
+) -> list[str]:
     entries, ranking = [entry for ordered in tables.values() for entry in ordered], ranking_of(benchmark)
     return [
         *(_lead(ranking.tracks[referenced], ordered) for referenced, ordered in tables.items() if ordered),
+        *(
+            _count_sentence(ranking.tracks[side], len(own), spread[side])
+            for side, own in tables.items()
+            if own and spread[side] > 0.0
+        ),
         *([_leak_sentence(entries)] if ranking.leak else []),
         f"Scores are {ranking.said}, with 95 % limits over gearboxes. Digest {benchmark.digest}, simulation version "
         f"{benchmark.simulation_version}: only scores with the same two are comparable.",
     ]
+
+
+def _count_sentence(track: str, entries: int, spread: float) -> str:
+    """Say what the best of all entries of a track reaches without knowledge."""
+    return (
+        f"{track}: {counted(entries, 'entry', 'entries')} counted, baselines among them. The best of so many without "
+        f"knowledge exceeds a mean AUC of {decimal(best_by_chance(entries, spread))} in 5 % of the cases; a mean below "
+        "shows nothing."
+    )
 
 
 def _leak_sentence(entries: Sequence[BoardEntry]) -> str:
@@ -313,4 +396,5 @@ def _numbers(ordered: Sequence[BoardEntry], benchmark: Benchmark) -> list[dict[s
 
 
 def _parts(entry: BoardEntry, benchmark: Benchmark) -> tuple[str, ...]:
-    return (*((MEAN,) if len(entry.every) == len(benchmark.parts) else ()), *entry.every)
+    own = parts_of(benchmark.parts, referenced=entry.referenced)
+    return (*((MEAN,) if len(entry.every) == len(own) else ()), *entry.every)

@@ -158,6 +158,7 @@ def _renumbered_rows(
 LIFE_QUESTION = Question(
     title="siggen-bench 1.0, lives",
     conditions=LIFE_CONDITIONS,
+    parts=dict,
     words=Words("Remaining life of gears", RULES, "history", part_card),
     ranking=Ranking(
         REMAINING_LIFE,

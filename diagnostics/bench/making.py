@@ -14,6 +14,7 @@ from __future__ import annotations
 import json
 import math
 import shutil
+import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,7 @@ import pyarrow as pa
 
 import siggen
 from diagnostics.base.beside import beside
-from diagnostics.bench.conditions import TIERS, changed
+from diagnostics.bench.conditions import CONDITIONS, TIERS, changed, is_alone
 from diagnostics.bench.derived_secret import derived, read_secret, seed_of, shuffled
 from diagnostics.bench.question import PublishedRecords, Question, Renumbered, Words
 from diagnostics.bench.questions import question_of
@@ -44,7 +45,7 @@ from diagnostics.scoring.benchmark import (
 )
 from siggen.dataset.reading import Dataset, as_record
 from siggen.dataset.reading import open as open_set
-from siggen.errors import DatasetError, UsageError
+from siggen.errors import DatasetError, UsageError, counted
 from siggen.file_writing import write_file
 from siggen.keys.column import Role
 from siggen.plain_json import json_text
@@ -56,6 +57,8 @@ NUMBERS = ("damaged_area_mm2", "damaged_area_share", "damage_profile_length_mm",
 GIVEN = ("operating_point_id", "speed_hz", "torque_nm")
 """Conditions that every set has."""
 TEETH = "teeth_"
+DIGITS = 4
+"""To which conditions of test parts are rounded: a whole double would tell a guessed seed from all wrong ones."""
 
 
 def renumbered(dataset: Dataset, shown: PublishedRecords, secret: bytes, name: str, place: int) -> Renumbered:
@@ -108,7 +111,7 @@ def blind_rows(dataset: Dataset, numbers: Renumbered) -> list[dict[str, Any]]:
 def _blind(row: dict[str, Any], numbers: Renumbered, kept: list[str], signals: list[str]) -> dict[str, Any]:
     told = row["record_id"] in numbers.shown.told
     return {
-        **{name: row[name] for name in kept},
+        **{name: _rounded(row[name]) for name in kept},
         "record_id": numbers.record[row["record_id"]],
         "specimen_id": numbers.gearbox[row["specimen_id"]],
         "state_id": numbers.shown.state_id[row["record_id"]],
@@ -120,6 +123,13 @@ def _blind(row: dict[str, Any], numbers: Renumbered, kept: list[str], signals: l
         "signals": tuple(row[name].copy() for name in signals),
         "tacho_s": row["tacho_s"],
     }
+
+
+def _rounded(value: Any) -> Any:
+    """Return a number with four digits; anything else as it is, of a list each."""
+    if isinstance(value, list | tuple):
+        return [_rounded(one) for one in value]
+    return float(f"{value:.{DIGITS}g}") if isinstance(value, float) else value
 
 
 def sealed_part(dataset: Dataset, numbers: Renumbered, life: Mapping[str, pa.Table]) -> dict[str, Any]:
@@ -190,8 +200,7 @@ def _front_matter(facts: Mapping[str, Any], licence: str, train: str) -> str:
     tests = "\n".join(
         f"- config_name: {name}\n  data_files:\n"
         + _files("test", f"{TESTS}/{name}/data/test-*.parquet")
-        + "\n"
-        + _files(train, f"{TESTS}/{name}/data/train-*.parquet")
+        + ("" if is_alone(name) else "\n" + _files(train, f"{TESTS}/{name}/data/train-*.parquet"))
         for name in facts["parts"]
     )
     said = f"{licence}\n" if licence else ""
@@ -246,6 +255,10 @@ def reveal_benchmark(folder: str | Path, labels: str | Path | None = None) -> Pa
 
 LEARNT = str(Path(__file__).with_name("siggen_bench.yaml"))
 """The part of siggen-bench to learn from."""
+RECORD_S, START_S = 0.21, 0.9
+"""Seconds of CPU for a second of signal, and seconds of signal that cost as much as a start: `full` took 0.5 s a record
+of 1.5 s on one core of a server (November 2026)."""
+
 SECRET_FILE, SIMULATED, CARD = "secret", "simulated", "README.md"
 
 
@@ -260,6 +273,8 @@ def make_benchmark(
     workers: int | None = None,
 ) -> Benchmark:
     """Make a part to learn from, and test parts without labels whose seeds nobody knows; or go on with them.
+
+    What the tiers of siggen-bench cost is printed first.
 
     Parameters
     ----------
@@ -290,9 +305,22 @@ def make_benchmark(
     out, own = Path(folder), Path(facts) if facts else None
     hidden = Path(secret) if secret else beside(out, SECRET)
     learn = siggen.load_config(config or LEARNT, [*overrides, f"specimens={TIERS[tier].learn}"])
+    if config is None:
+        sys.stderr.write(f"{cost_sentence(learn)}\n")
     return write_benchmark(
         out, hidden, read_secret(hidden / SECRET_FILE), learn, tier, TIERS[tier].test, facts=own, workers=workers
     )
+
+
+def cost_sentence(learn: Any) -> str:
+    """Return what each tier costs with a configuration to learn from, in minutes of CPU."""
+    parts = len(question_of(learn.canonical()).parts(CONDITIONS))
+    records = {name: (size.learn + parts * size.test) * learn.records_per_specimen for name, size in TIERS.items()}
+    a_record_s = RECORD_S * (START_S + learn.duration_s)
+    said = ", ".join(
+        f"{name} {counted(one, 'record')}, {one * a_record_s / 60:.0f} min" for name, one in records.items()
+    )
+    return f"CPU time to simulate: {said}"
 
 
 def write_benchmark(
@@ -340,7 +368,7 @@ def write_benchmark(
         raise UsageError(f"{hidden}: what is secret may not lie in {out}, nor that in it; name another folder")
     secret = derived(secret, tier, learn.identity)  # what one benchmark reveals tells nothing of another
     question = question_of(learn.canonical())
-    conditions = conditions or question.conditions
+    conditions = question.parts(conditions or question.conditions)
     tests = {name: _test_config(learn, name, conditions[name], gearboxes, secret) for name in conditions}
     _write_learn(learn, out / LEARN, hidden, facts, workers)
     parts = {}

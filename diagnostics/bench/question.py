@@ -106,7 +106,9 @@ class Question:
     ----------
     title : str
     conditions : mapping
-        Name of a test part -> what differs from the configuration to learn from.
+        Name of a condition -> what differs from the configuration to learn from.
+    parts : callable
+        Conditions; returns the same by test part.
     words : Words
     ranking : Ranking
     shown : callable
@@ -119,6 +121,7 @@ class Question:
 
     title: str
     conditions: Mapping[str, Mapping[str, Any]]
+    parts: Callable[[Mapping[str, Mapping[str, Any]]], Mapping[str, Mapping[str, Any]]]
     words: Words
     ranking: Ranking
     shown: Callable[[Dataset, bytes, str], PublishedRecords]

@@ -93,7 +93,7 @@ class Config(Section):
     """Everything a data set follows from."""
 
     name: SetName = Field(description="name of the set")
-    seed: Annotated[Whole, Field(ge=0, lt=2**63)] = Field(description="where all randomness begins")
+    seed: Annotated[Whole, Field(ge=0, lt=2**128)] = Field(description="where all randomness begins")
     specimens: Annotated[Whole, Field(ge=1, le=10_000_000)] = Field(
         description="number of gearboxes; not part of the identity"
     )

@@ -24,7 +24,7 @@ from siggen.gearbox.plan import (
 )
 from tests.config.minimal import design
 
-SEEDS = st.integers(0, 2**63 - 1)
+SEEDS = st.integers(0, 2**128 - 1)
 
 
 @st.composite

@@ -116,3 +116,15 @@ def test_a_test_part_verifies_by_its_hashes_and_is_not_published_alone(made: Mad
     refused = command("siggen", "publish", str(folder), "--to", str(tmp_path / "upload"))
     assert refused.returncode == 2
     assert "is a test part of a benchmark" in refused.stderr
+
+
+def test_a_gearbox_shows_one_record_where_records_are_judged_alone_and_numbers_are_rounded(made: Made) -> None:
+    part, told = made.benchmark.part("same_alone"), truth(made, "same_alone")
+    rows = part.labels().to_pylist()
+    assert part.splits == ("test",)
+    assert len({row["specimen_id"] for row in rows}) == len(rows) == GEARBOXES
+    faults = [told[row["record_id"]]["fault"] for row in rows]
+    assert faults.count("healthy") == GEARBOXES // 2
+    for name in made.benchmark.parts:
+        for row in made.benchmark.part(name).labels().to_pylist():
+            assert all(float(f"{row[one]:.4g}") == row[one] for one in ("speed_hz", "torque_nm"))

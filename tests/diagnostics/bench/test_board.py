@@ -22,7 +22,8 @@ from diagnostics.bench.baselines import (
     entries,
     seen_records,
 )
-from diagnostics.bench.leaderboard import BOARD, NUMBERS
+from diagnostics.bench.conditions import parts_of
+from diagnostics.bench.leaderboard import BOARD, NUMBERS, best_by_chance
 from diagnostics.scoring.benchmark import open_benchmark
 from tests.diagnostics.bench.conftest import Made
 
@@ -41,17 +42,20 @@ def learned(made: Made, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_every_baseline_says_something_of_every_test_record(made: Made, learned: Path) -> None:
     table = pq.read_table(learned / "baselines" / "predictions.parquet")
-    asked = [
-        record
-        for part in made.benchmark.parts
-        for record in made.benchmark.part(part).labels("test", ["record_id"]).column("record_id").to_pylist()
-    ]
+    asked = {
+        side: [
+            record
+            for part in parts_of(made.benchmark.parts, referenced=side)
+            for record in made.benchmark.part(part).labels("test", ["record_id"]).column("record_id").to_pylist()
+        ]
+        for side in (False, True)
+    }
     names = set(table.column("classifier").to_pylist())
     assert {CHANCE, KURTOGRAM, STACK, KURTOGRAM + BESIDE, STACK + BESIDE} <= names
     rows = table.to_pylist()
     for name in names:
         own = [row for row in rows if row["classifier"] == name]
-        assert sorted(row["record_id"] for row in own) == sorted(asked)
+        assert sorted(row["record_id"] for row in own) == sorted(asked[name.endswith(BESIDE)])
         assert {row["reference"] for row in own} == {name.endswith(BESIDE)}
         assert np.isfinite([row["damage"] for row in own]).all()
     assert not [*learned.rglob("*_table")]  # the folder is published
@@ -74,17 +78,21 @@ def test_the_board_orders_entries_and_pairs_their_differences(made: Made, learne
     page = (folder / BOARD).read_text()
     assert "knows &lt;b&gt;all" in page
     assert made.benchmark.digest in page
-    rows = {row["name"]: row for row in json.loads((folder / NUMBERS).read_text())["entries"]}
+    numbers = json.loads((folder / NUMBERS).read_text())
+    rows = {row["name"]: row for row in numbers["entries"]}
+    for track in numbers["counted"].values():
+        assert 0.5 < track["best_by_chance"] < 0.9
+    assert sum(track["entries"] for track in numbers["counted"].values()) == len(rows)
     first = rows["knows <b>all"]
     assert next(iter(rows)) == "knows <b>all"
     assert first["auc"]["mean"]["value"] == 1.0
     for row in rows.values():
         if not row["beside_a_healthy_record"]:
-            difference = row["auc"]["same"]["value"] - first["auc"]["same"]["value"]
-            assert row["minus_first"]["same"]["value"] == pytest.approx(difference)
-    chance = rows[CHANCE]["auc"]["same"]
+            difference = row["auc"]["same_alone"]["value"] - first["auc"]["same_alone"]["value"]
+            assert row["minus_first"]["same_alone"]["value"] == pytest.approx(difference)
+    chance = rows[CHANCE]["auc"]["same_alone"]
     assert chance["low"] < 0.5 < chance["high"]
-    assert rows[CHANCE]["minus_first"]["same"]["high"] < 0.0
+    assert rows[CHANCE]["minus_first"]["same_alone"]["high"] < 0.0
 
 
 def test_a_classifier_of_states_is_graded_where_it_could_learn_them_and_detects_elsewhere(
@@ -102,10 +110,18 @@ def test_a_classifier_of_states_is_graded_where_it_could_learn_them_and_detects_
     mine = {name: np.concatenate(columns) for name, columns in rows.items()}
     found = diagnostics.score_benchmark(bench, mine, labels=made.sealed)
     tasks = {scores.set_name: {row.task for row in scores.rows} for scores in found.parts}
-    assert tasks == {"same": {"detect", "grade", "abstain"}, "other_fault": {"detect"}}
+    known, other = {"detect", "grade", "abstain"}, {"detect"}
+    assert tasks == {"same": known, "same_alone": known, "other_fault": other, "other_fault_alone": other}
     shown = str(found)
     assert "kurtogram" in shown
     assert bench.digest[:12] in shown
+
+
+def test_the_best_of_many_without_knowledge_exceeds_its_limit_in_one_board_of_twenty() -> None:
+    rng, entries, boards = np.random.default_rng(0), 20, 4000
+    best = rng.normal(0.5, 0.05, (boards, entries)).max(axis=1)
+    # a share of 0.05 of 4000 boards scatters by 0.0034
+    assert np.mean(best > best_by_chance(entries, 0.05)) == pytest.approx(0.05, abs=4 * 0.0034)
 
 
 @pytest.mark.slow  # learns everything twice
