@@ -76,8 +76,17 @@ Explore.tools = (title, plot) => {
   return tools;
 };
 
+// A name that is longer than its axis would be cut at both ends: its beginning says more.
+Explore.fitted = (name, side) => ({ bbox, ctx }) => {
+  const [middle, whole] = side ? [bbox.top + bbox.height / 2, ctx.canvas.height] : [bbox.left + bbox.width / 2, ctx.canvas.width];
+  const room = 2 * Math.min(middle, whole - middle);
+  let text = name;
+  while (text.length > 4 && ctx.measureText(text).width > room) text = `${text.slice(0, -2)}…`;
+  return text;
+};
+
 Explore.axis = (label, side, more = {}) => ({
-  label, stroke: Explore.colour("ink"), grid: { stroke: Explore.colour("grid"), width: 1 },
+  label: label && Explore.fitted(label, side), stroke: Explore.colour("ink"), grid: { stroke: Explore.colour("grid"), width: 1 },
   ticks: { stroke: Explore.colour("grid") }, size: side ? 62 : 38, labelSize: 20,
   values: (_, splits) => splits.map((value) => (value === null ? "" : Number(value.toPrecision(6)).toString())),
   ...more,

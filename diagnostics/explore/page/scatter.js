@@ -41,7 +41,7 @@ Explore.drawScatter = () => {
   const margin = 0.04 * (high - low) || 1;
   const size = rows.length > 1000 ? 4 : 7;
   const plot = Explore.chart(body, {
-    title: "Two columns", short: "across", x: Explore.pair[0].title, y: Explore.pair[1].title, height: 300, data, range: [low - margin, high + margin],
+    title: `${Explore.pair[1].title} over ${Explore.pair[0].title}`, short: "across", x: Explore.pair[0].title, y: Explore.pair[1].title, height: 300, data, range: [low - margin, high + margin],
     series: [dots(Explore.data.measured ? "others" : "damaged", "record", size), dots("healthy", "healthy", size), ...(Explore.beside ? [dots("recordings", "other", 9)] : []), dots("chosen", "damage", 13)],
     xAxis: Explore.namedAxis(Explore.pair[0]), yAxis: Explore.namedAxis(Explore.pair[1]),
     summary: `${rows.length} records; the table of records opens them too.`, caption: "A click on a point opens its record. Drag to zoom.", cursor: { drag: { x: true, y: true, uni: 30 } },

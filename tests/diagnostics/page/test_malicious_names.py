@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import re
 import warnings
+from collections.abc import Iterator
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
+import pyarrow as pa
 import pytest
 
 from diagnostics.cli.app import app
@@ -16,7 +19,8 @@ from diagnostics.page.template import page_html
 from diagnostics.records.usable_records import with_channels
 from diagnostics.report.report import write_report
 from siggen.printable import printable
-from tests.diagnostics.conftest import CHANNELS, MemoryDataset, memory_dataset
+from tests.diagnostics import conftest
+from tests.diagnostics.conftest import MemoryDataset, memory_dataset
 from tests.diagnostics.explore.test_explorer import NAMES, renamed
 from tests.diagnostics.machine.test_check import FS_HZ, run, write_recording
 
@@ -62,10 +66,20 @@ def shown(name: str) -> str:
     return re.sub(r"\s+", " ", printable(name, lines=True)).strip()
 
 
+EVIL = '"><img src=x onerror=alert(1)>'
+SENSORS = (f"{EVIL}_vertical", "<script>alert(1)</script>_horizontal")
+
+
 @pytest.fixture(scope="module")
-def malicious() -> MemoryDataset:
+def malicious() -> Iterator[MemoryDataset]:
+    """A set whose folder, states, faults and one sensor have names that a page must not obey."""
     names = {**NAMES, "severe": NAMES["severe"] + r"$\frac{1}$"}  # no mathematics for figures to typeset
-    return renamed(memory_dataset(("train",) * 4 + ("validation",) * 2 + ("test",) * 4), names)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(conftest, "CHANNELS", SENSORS)
+        found = renamed(memory_dataset(("train",) * 4 + ("validation",) * 2 + ("test",) * 4), names)
+        faults = ["healthy" if name == "healthy" else EVIL for name in found.table.column("fault").to_pylist()]
+        place = found.table.column_names.index("fault")
+        yield replace(found, table=found.table.set_column(place, "fault", pa.array(faults)), path=Path(EVIL))
 
 
 @pytest.mark.slow  # trains and draws all of a report; the page of records has these names in every run
@@ -73,9 +87,9 @@ def test_a_report_shows_every_name_as_text(malicious: MemoryDataset, tmp_path: P
     states = list(dict.fromkeys(malicious.table.column("state").to_pylist()))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # letters that the font of figures lacks; no room for a name
-        one_channel = with_channels(malicious, CHANNELS[:1])
+        one_channel = with_channels(malicious, SENSORS[:1])
         page = write_report(one_channel, tmp_path / "report", 0, network=NetworkOptions(cnn=False))
-    check(page, states, scripts=2)
+    check(page, [*states, EVIL, SENSORS[0]], scripts=2)
 
 
 def test_the_page_of_a_machine_shows_names_of_files_as_text(tmp_path: Path) -> None:
