@@ -84,27 +84,28 @@ def detection_curves(
 
 def _curve(values: np.ndarray, threshold: np.ndarray, size: np.ndarray, weights: np.ndarray) -> DetectionCurve | None:
     """Return the curve of damaged records, (n,), whose thresholds are given, (b,)."""
-    medians, members = _members(size.astype(np.float64).tobytes())
-    if len(members) < 2:
+    medians, rows, first = _members(size.astype(np.float64).tobytes())
+    if medians.size < 2:
         return None
-    resamples = np.arange(threshold.size)
-    alarms, counts = np.empty((2, threshold.size, len(members)))
-    for group, rows in enumerate(members):
-        order = rows[np.argsort(-values[rows], kind="stable")]
-        sums = sums_before(weights.T[order])
-        above = rows.size - np.searchsorted(values[order][::-1], threshold, side="right")
-        alarms[:, group], counts[:, group] = sums[above, resamples], sums[-1]
-    return DetectionCurve(medians, isotonic(alarms, counts))
+    drawn = weights.T[rows]
+    alarms = np.add.reduceat(drawn * (values[rows, None] > threshold), first, axis=0)
+    return DetectionCurve(medians, isotonic(alarms.T, np.add.reduceat(drawn, first, axis=0).T))
 
 
 @lru_cache(maxsize=16)
-def _members(sizes: bytes) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Return the median size of each group, and its rows, of (n,) float64 as bytes; most columns have the same."""
+def _members(sizes: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return median sizes of groups, their rows one after the other, and where each begins, of (n,) float64 as bytes.
+
+    Most columns have the same.
+    """
     size = np.frombuffer(sizes)
     positive = np.flatnonzero(size > 0.0)
     order = positive[np.argsort(size[positive], kind="stable")]
     members = _groups(order, size[order])
-    return np.array([float(np.median(size[rows])) for rows in members]), members
+    if not members:
+        return np.empty(0), order, order
+    first = np.cumsum([0, *map(len, members[:-1])])
+    return np.array([float(np.median(size[rows])) for rows in members]), np.concatenate(members), first
 
 
 def _groups(order: np.ndarray, size: np.ndarray) -> list[np.ndarray]:
@@ -133,15 +134,17 @@ def isotonic(sums: np.ndarray, counts: np.ndarray) -> np.ndarray:
         Sum and weight of each group; a group without weight takes the value of the one below.
     """
     total, weight = sums_before(sums.T), sums_before(counts.T)
-    fit = np.empty_like(sums)
+    fit, whole = np.empty_like(sums), bool((counts > 0.0).all())
     highest = np.full(sums.T.shape, -np.inf)
     # mean of groups j ... k: the largest over j <= i, of which the least over k >= i is the fit of group i
     for i in range(sums.shape[1]):
         with np.errstate(invalid="ignore", divide="ignore"):
             mean = (total[i + 1 :] - total[i]) / (weight[i + 1 :] - weight[i])
-        mean[~np.isfinite(mean)] = -np.inf  # a stretch without weight takes part in neither bound
+        if not whole:
+            mean[~np.isfinite(mean)] = -np.inf  # a stretch without weight takes part in neither bound
         np.maximum(highest[i:], mean, out=highest[i:])
-        fit[:, i] = np.where(np.isneginf(highest[i:]), np.inf, highest[i:]).min(axis=0)
+        bound = highest[i:] if whole else np.where(np.isneginf(highest[i:]), np.inf, highest[i:])
+        fit[:, i] = bound.min(axis=0)
     return fit
 
 

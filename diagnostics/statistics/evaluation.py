@@ -18,6 +18,7 @@ would, which is 0.025^(1/n). The combination is derived; its coverage is tested 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -246,10 +247,20 @@ def interval(samples: np.ndarray, specimens: int) -> Interval:
     defined = drawn if finite.all() else drawn[finite]
     if specimens < 2 or defined.size == 0:
         return Interval(float(samples[0]), math.nan, math.nan)
-    low, high = np.quantile(defined, [(1.0 - LEVEL) / 2.0, (1.0 + LEVEL) / 2.0])
+    low, high = _quantiles(defined, ((1.0 - LEVEL) / 2.0, (1.0 + LEVEL) / 2.0))
     if specimens < FEWEST_THAT_AGREE and math.isclose(low, high, rel_tol=1e-12):
         low = high = math.nan
     return Interval(float(samples[0]), float(low), float(high))
+
+
+def _quantiles(values: np.ndarray, shares: Sequence[float]) -> list[float]:
+    """Return quantiles of a few hundred values, to the bit as `np.quantile` does, in a fifth of its time."""
+    ordered, found = np.sort(values), []
+    for share in shares:
+        below, part = divmod((values.size - 1) * share, 1.0)
+        low, high = ordered[int(below)], ordered[min(int(below) + 1, values.size - 1)]
+        found.append(float(low + (high - low) * part if part < 0.5 else high - (high - low) * (1.0 - part)))
+    return found
 
 
 def macro_auroc(predictions: Predictions, weights: np.ndarray) -> np.ndarray:
