@@ -20,6 +20,7 @@ from siggen.lanes import (
     as_doubles,
     extract,
     gather_between,
+    gather_pairs,
     larger,
     load,
     magnitude,
@@ -494,24 +495,26 @@ def settled_spring(last: Spring, force: Value, penetration_m: Value, yielding: V
 
 
 class LoadPart(NamedTuple):
-    """Share of the load of a pair, and the mean of its places [m]."""
+    """Share of the load of a pair, and the mean of its places [m]; numbers, or lanes of them."""
 
-    share: float
-    place: float
+    share: Value
+    place: Value
 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
-def spread(law: PairLaw, position_m: float) -> tuple[LoadPart, LoadPart]:
+def spread(law: PairLaw, position_m: Value) -> tuple[LoadPart, LoadPart]:
     """Return the load before and behind the pitch point of a pair whose middle of the face is at a position [m]."""
-    scalars, numbers, points = law.scalars, law.numbers, law.places[layout.POINTS]
+    scalars, points = law.scalars, law.places[layout.POINTS]
     along = (position_m - scalars[layout.START_M]) / scalars[layout.PITCH_M] * scalars[layout.PER_PITCH]
-    along = min(max(along, 0.0), points - 1.0)
-    cell = min(int(along), points - 2)
-    weight = along - cell
-    first = law.places[layout.SPREAD_AT] + cell
-    share = numbers[first] + weight * (numbers[first + 1] - numbers[first])
-    first += points
-    before = numbers[first] + weight * (numbers[first + 1] - numbers[first])
-    first += points
-    behind = numbers[first] + weight * (numbers[first + 1] - numbers[first])
+    along = smaller(larger(along, 0.0), points - 1.0)
+    cell = smaller(truncated(along), points - 2)
+    weight, first = along - as_doubles(cell), cell + law.places[layout.SPREAD_AT]
+    share, before = _risen(law, first, weight), _risen(law, first + points, weight)
+    behind = _risen(law, first + 2 * points, weight)
     return LoadPart(share, position_m + before), LoadPart(1.0 - share, position_m + behind)
+
+
+@njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
+def _risen(law: PairLaw, first: Whole, weight: Value) -> Value:
+    low, high = gather_pairs(law.numbers, first)
+    return low + weight * (high - low)

@@ -360,7 +360,7 @@ def work_arrays(scheme: Scheme, laws: Sequence[PairLaw]) -> Work:
     columns, inputs = scheme.transition.shape[2], scheme.input_response.shape[2]
     return Work(
         nodes=tuple(aligned(np.zeros((NODE_ROWS, LANES))) for _ in laws),
-        tables=tuple(lane_table(law, scheme.nodes) for law in laws),
+        tables=tuple(lane_table(law, scheme.nodes, scheme.weights) for law in laws),
         excess=aligned(np.zeros((CHANNELS * len(laws), LANES))),
         seen=aligned(np.zeros(columns)),
         state=aligned(np.zeros(columns)),
