@@ -18,7 +18,8 @@ class Section(BaseModel):
     key_field: ClassVar[str] = ""
     """The field that a file gives as the key under which the section stands, such as the name of a state."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+    # Built with the first file that is read: workers, which get a design that was read, never build one.
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True)
 
     def identity_value(self, key: str) -> Any:
         """Return what the value of a key stands for, which is what counts in an identity; as a rule the value."""
