@@ -1,4 +1,4 @@
-"""Work against precision of one record: siggen, Runge-Kutta, DOP853 and scipy on the same equations.
+"""Work against precision of one record: siggen, Runge-Kutta, DOP853, Newmark and scipy on the same equations.
 
 All start from the same state and see the same angle and inputs. An error is the median over the motions of the relative
 rms difference of the acceleration between samples (second difference of the displacement), behind the first STARTING_S,
@@ -16,20 +16,24 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from benchmarks.compiled_dop853 import dop853
+from benchmarks.compiled_newmark import inverse_tangent, newmark
 from benchmarks.driven_rate import compiled_rate, driven_rate
 from benchmarks.precision_case import Case, state_grid
 from siggen.arrays import FloatArray
+from siggen.motion.equations import state_matrix
+from siggen.motion.pair_motion import PairMotion
 
 WINDOW_S, STARTING_S, LOOP_S, ROUNDS = 0.1, 0.02, 0.5, 3
 REFERENCE_STEPS = 64
 OWN_STEPS, PLAIN_STEPS = (1, 2, 4), (1, 2, 4, 8, 16)
 FINEST_PLAIN_STEPS = 64
 """Of the linear law: Runge-Kutta loses its order where a pair of teeth enters within a step."""
+NEWMARK_STEPS = (4, 16, 64)
 TOLERANCES, ABSOLUTE_SHARE = (1e-3, 1e-5, 1e-7), 1e-6
 GRID_STEPS = 4
 """Per sample: points between which other solvers find angle and inputs straight, an error of 1e-8 rad at most."""
-PLAIN, COMPILED = "Runge-Kutta, numba", "DOP853, numba"
-"""Adaptive and compiled as a whole; those of scipy call a compiled rate from Python."""
+PLAIN, COMPILED, NEWMARK = "Runge-Kutta, numba", "DOP853, numba", "Newmark, numba"
+"""Compiled as a whole, the second one adaptive; those of scipy call a compiled rate from Python."""
 Scipy = Literal["DOP853", "LSODA"]
 SCIPY: tuple[Scipy, ...] = ("DOP853", "LSODA")
 
@@ -57,6 +61,8 @@ def work_points(case: Case, *, quick: bool) -> Iterator[Point]:
     compiled |= {(COMPILED, _rtol(rtol)): _compiled_solver(case, rtol) for rtol in tolerances}
     plain = (*PLAIN_STEPS, FINEST_PLAIN_STEPS) if case.method == "product" else PLAIN_STEPS
     compiled |= {(PLAIN, steps_text(k)): own_solver(case, "runge_kutta", k) for k in plain}
+    if case.method == "exponential":
+        compiled |= {(NEWMARK, steps_text(k)): _newmark_solver(case, k) for k in NEWMARK_STEPS}
     errors = {key: _error(_accelerations(case, solver(WINDOW_S)()), wanted) for key, solver in compiled.items()}
     rounds = [{key: _cost(solver, LOOP_S) for key, solver in compiled.items()} for _ in range(ROUNDS)]
     for key, error in errors.items():
@@ -141,6 +147,26 @@ def _compiled_solver(case: Case, rtol: float) -> Solver:
         function, model = compiled_rate(motion, case.driven.speed_input, pitches, inputs)
         tolerance = (rtol, ABSOLUTE_SHARE * rtol)
         return lambda: dop853(function, model, start, fs_hz * GRID_STEPS, 1.0 / fs_hz, tolerance)
+
+    return prepared
+
+
+def _newmark_solver(case: Case, steps: int) -> Solver:
+    motion, start, rate_hz = case.motion("runge_kutta", 1), _start(case), case.config.fs_hz * steps
+    assert isinstance(motion, PairMotion)
+    linear = state_matrix(motion.equations, motion.equations.reference_stiffness, motion.damping)
+    inverse = inverse_tangent(linear, 1.0 / rate_hz)
+
+    def prepared(duration_s: float) -> Run:
+        pitches, inputs = case.driven_steps(motion, GRID_STEPS, duration_s)
+        function, model = compiled_rate(motion, case.driven.speed_input, pitches, inputs)
+        path = np.empty((round(duration_s * rate_hz) + 1, start.size))
+
+        def run() -> FloatArray:
+            newmark(function, model, inverse, start, GRID_STEPS / steps, 1.0 / rate_hz, path)
+            return path[::steps]
+
+        return run
 
     return prepared
 
