@@ -36,7 +36,7 @@ from siggen.sets.drawn import compilation_parts, simulated
 begin = time.process_time()
 config = siggen.load_config(sys.argv[1], ["specimens=1", "duration_s=0.05"])
 if sys.argv[2] == "record":
-    severest = max(i for i, state in enumerate(config.states) if state.damaged)
+    severest = max(config.damaged_states(0))
     list(simulated(config, [severest * config.records_per_specimen // config.state_count]))
 elif sys.argv[2] != "check":
     run_part(next(part for part in compilation_parts(config) if part.name == sys.argv[2]))
