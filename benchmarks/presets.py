@@ -27,8 +27,8 @@ def rows(*, quick: bool) -> Iterator[Row]:
     """Yield one row per preset: CPU time per second of signal as a sum, and its parts."""
     for file in sorted((ROOT / "configs").glob("*.yaml")):
         config = shipped(file)
-        _costs(shipped(file, "duration_s=0.05"), 0)  # compiles
-        found = [_costs(config, gearbox) for gearbox in range(1, 2 if quick else 4)]
+        costs(shipped(file, "duration_s=0.05"), 0)  # compiles
+        found = [costs(config, gearbox) for gearbox in range(1, 2 if quick else 4)]
         mean = {name: sum(cost.get(name, 0.0) for cost in found) / len(found) for name in found[0]}
         yield _row(file.stem, config, mean)
 
@@ -46,7 +46,7 @@ def _row(name: str, config: SetDesign, cost: Mapping[str, float]) -> Row:
     )
 
 
-def _costs(config: SetDesign, gearbox: int) -> dict[str, float]:
+def costs(config: SetDesign, gearbox: int) -> dict[str, float]:
     """Return the CPU time of every stage per second of signal; plan and tables are shared out to all records."""
     ids = record_ids_of(config, gearbox)
     chosen = [ids[round(k * (len(ids) - 1) / (RECORDS - 1))] for k in range(RECORDS)]
