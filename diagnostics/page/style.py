@@ -144,16 +144,11 @@ ABOVE = 1.9
 
 def order_words(mesh: GearMesh) -> str:
     """Return what the orders of a mesh's spectra count."""
-    return f"{mesh.names.gears[0]} orders" if mesh.planets is None else f"orders of {_against_carrier(mesh)}"
-
-
-def turn_words(mesh: GearMesh) -> str:
-    """Return what passes between two pulses."""
-    return f"{mesh.names.gears[0]} revolution" if mesh.planets is None else f"turn of {_against_carrier(mesh)}"
-
-
-def _against_carrier(mesh: GearMesh) -> str:
-    return f"the {mesh.names.gears[0]} against the carrier"
+    return (
+        f"{mesh.names.gears[0]} orders"
+        if mesh.planets is None
+        else f"orders of the {mesh.names.gears[0]} against the carrier"
+    )
 
 
 def sideband_places(mesh: GearMesh, harmonic: int, count: int) -> dict[str, np.ndarray]:
