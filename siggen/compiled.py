@@ -11,6 +11,8 @@ calls. Then a machine that has run an older version would go on with parts of it
 same sources of all compiled code alone.
 """
 
+# mypy: disallow-untyped-calls=False
+
 from __future__ import annotations
 
 import os
@@ -21,6 +23,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+from numba.core import types
 
 from siggen.sources import sources_digest
 
@@ -71,6 +74,7 @@ def _decorator(options: dict[str, Any]) -> Callable[[Function], Function]:
 
     def compiled(function: Function, **other: Any) -> Function:
         made: Function = numba.njit(no_cfunc_wrapper=True, **{**options, **other})(function)
+        _take_numbers_alike(made)
         return _of_these_sources(made)
 
     def decorated(function: Function) -> Function:
@@ -84,6 +88,19 @@ def _decorator(options: dict[str, Any]) -> Callable[[Function], Function]:
             return compiled(function)
 
     return decorated
+
+
+def _take_numbers_alike(function: Any) -> None:
+    """Let a compiled function take a number that stands in a call as any other: one version does for all of them.
+
+    numba would make one for each; LLVM knows the number anyway where it puts the function into its caller.
+    """
+    template, plain = function.get_call_template, types.unliteral
+
+    def of_any(args: tuple[Any, ...], kws: dict[str, Any]) -> Any:
+        return template(tuple(map(plain, args)), {name: plain(kind) for name, kind in kws.items()})
+
+    function.get_call_template = of_any
 
 
 def is_cached(function: Any) -> bool:

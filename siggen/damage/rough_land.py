@@ -89,7 +89,8 @@ def _grown(
                 more = sqrt(square)
                 filled = insert_interval(low[j, k] - more, high[j, k] + more, 0.0, 0.0, room, filled)
         count[i] = merge_intervals(room, filled, merged)
-        out[0, i], out[1, i] = merged[0], merged[1]
+        for k in range(near * widest):
+            out[0, i, k], out[1, i, k] = merged[0, k], merged[1, k]
     return out[0], out[1], count
 
 

@@ -279,7 +279,9 @@ def _filled(rows: FloatArray) -> FloatArray:
     """Return the rows, and zeros up to a multiple of four rows and to whole registers."""
     count, columns = rows.shape
     filled = np.zeros((count + -count % AT_ONCE, _whole(columns)))
-    filled[:count, :columns] = rows
+    for i in range(count):
+        for k in range(columns):
+            filled[i, k] = rows[i, k]
     return filled
 
 

@@ -88,7 +88,8 @@ def _active_between(tooth: PittedTooth, low: float, high: float, room: Room) -> 
     active = room.active
     count = active_pits(x, tooth.pits, active)
     count = add_intervals(x, tooth.pits, active, count, tooth.face_width, room.intervals, 0)
-    active[:count] = room.intervals.owner[:count]
+    for i in range(count):
+        active[i] = room.intervals.owner[i]
     return count
 
 
