@@ -296,7 +296,6 @@ def fine_lags(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.ndar
 
 
 METADATA, TEXTS, BYTE, ORDER, NOISE, CHANNELS = "metadata", "texts", "bytes", "order", "noise", "channels"
-STEADY_BYTES = BYTES[:2]
 STEADY_NOISE = NOISE_LEVELS[4:]
 """Bands in which a stroke has rung off within half a turn: from 637 Hz on at 25.6 kHz.
 
@@ -367,11 +366,11 @@ def _order(measured: MeasuredSet) -> dict[str, np.ndarray]:
 
 
 def _bytes(measured: MeasuredSet) -> dict[str, np.ndarray]:
-    """Return means over the channels; step and odd mantissas of each channel besides, which no clipping moves."""
+    """Return means over the channels; the step of each channel besides, which no clipping moves."""
     held = {name: measured.values[name] for name in BYTES if name in measured.values}
     found = {name: _mean(values) for name, values in held.items()}
-    for name in [name for name in STEADY_BYTES if name in held] if len(measured.channels) > 1 else []:
-        found |= {f"{name} of {channel}": held[name][:, k] for k, channel in enumerate(measured.channels)}
+    if (step := held.get(BYTES[0])) is not None and len(measured.channels) > 1:
+        found |= {f"{BYTES[0]} of {channel}": step[:, k] for k, channel in enumerate(measured.channels)}
     return found
 
 

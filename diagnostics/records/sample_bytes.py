@@ -9,14 +9,14 @@ import math
 
 import numpy as np
 
-BYTES = ("converter_step_log2", "odd_share", "longest_run")
+BYTES = ("converter_step_log2", "longest_run")
 MOST_CODES, NEAREST = 2.0**26, 0.01
 FIRST = 16384
 """Samples of a signal without steps, of which some differ by less than the largest over 2^26."""
 
 
 def sample_bytes(signal: np.ndarray) -> dict[str, float]:
-    """Return by name: log2 of the converter's step, share of odd mantissas, longest run of equal samples.
+    """Return by name: log2 of the converter's step, longest run of equal samples.
 
     Parameters
     ----------
@@ -30,11 +30,7 @@ def sample_bytes(signal: np.ndarray) -> dict[str, float]:
     stored = np.ascontiguousarray(signal, dtype="<f4")
     if stored.size < 2:
         return dict.fromkeys(BYTES, math.nan)
-    return {
-        "converter_step_log2": _step_log2(stored),
-        "odd_share": float(np.mean(stored.view("<u4") & 1)),
-        "longest_run": _longest_run(stored),
-    }
+    return {"converter_step_log2": _step_log2(stored), "longest_run": _longest_run(stored)}
 
 
 def _longest_run(stored: np.ndarray) -> float:

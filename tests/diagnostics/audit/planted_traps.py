@@ -31,10 +31,8 @@ def angle(clean: MeasuredSet) -> MeasuredSet:
 
 
 def byte(clean: MeasuredSet) -> MeasuredSet:
-    """Damaged records went through a program that leaves the last bit of a sample even."""
-    odd = np.random.default_rng(1).normal(0.5, 0.005, clean.values["odd_share"].shape)
-    odd[~clean.healthy] = 0.0
-    return valued(clean, odd_share=odd)
+    """Damaged records went through a converter of half the step."""
+    return valued(clean, converter_step_log2=-12.0 - 1.0 * ~clean.healthy[:, None] * np.ones(len(clean.channels)))
 
 
 def path(clean: MeasuredSet) -> MeasuredSet:
