@@ -14,9 +14,9 @@ from diagnostics.audit.detectability import (
     SIZES,
     TARGETS,
     Detectability,
-    DetectedLength,
-    differ_in_length,
-    length_at,
+    DetectedArea,
+    area_at,
+    differ_in_area,
 )
 from diagnostics.audit.envelope import QuantityShare, Realism
 from diagnostics.audit.reference_comparison import FEWEST_GEARBOXES, FEWEST_RECORDINGS, TELLING_AUC, ReferenceComparison
@@ -66,7 +66,7 @@ def chance_sentence(audit: Audit) -> str:
         return f"{strongest} stays below {spread} in 95 % of {turns}"
     return (
         f"{strongest} reaches an AUC of {decimal(chance.auc)} in 5 % of {turns} So no AUC here tells damage from "
-        "chance, and no length of damage is named."
+        "chance, and no size of damage is named."
     )
 
 
@@ -313,14 +313,14 @@ def _strongest_words(audit: Audit, state: str) -> str:
 
 
 def _size_sentence(detections: dict[str, list[Detectability]]) -> list[str]:
-    """Say from which length on damage is found at the lower target, by each variant that reaches it."""
+    """Say from which damaged area on damage is found at the lower target, by each variant that reaches it."""
     target, parts = TARGETS[0], []
     for name, entries in detections.items():
-        for fault, reached in length_at(entries, target).items():
+        for fault, reached in area_at(entries, target).items():
             if reached:
                 bound = "at most " if reached.is_upper_bound else ""
-                parts.append(f"{bound}{reached.length_mm:.2f}\N{NO-BREAK SPACE}mm of {fault} by {name}")
-    return [f"An AUC of {target:g} is reached from {joined(parts)}. Lengths are along the profile."] if parts else []
+                parts.append(f"{bound}{reached.area_mm2:.2g}\N{NO-BREAK SPACE}mm² of {fault} by {name}")
+    return [f"An AUC of {target:g} is reached from {joined(parts)} (damaged area)."] if parts else []
 
 
 COLUMNS = 2
@@ -344,8 +344,8 @@ BACKGROUND_CAPTION = (
 )
 REALISM_CAPTION = "Healthy channel-records (grey) against the range of measured healthy gearboxes (green)."
 SIZE_CAPTION = (
-    "AUC against healthy over the length of the damage along the profile, with 95 % limits. Dashed: chance. Dotted: "
-    "0.75 and 0.85. Damage that grows along the face only is in the tables."
+    "AUC against healthy over the damaged area, with 95 % limits. Dashed: chance. Dotted: 0.75 and 0.85. Damage of one "
+    "area is in the tables."
 )
 
 
@@ -380,11 +380,11 @@ def _draw_quantity(axis: Any, share: QuantityShare) -> None:
 
 
 def detectability_figure(variants: dict[str, list[Detectability]]) -> Figure:
-    """Return AUC over profile length with intervals: a panel per variant, a marker per fault; dotted: targets.
+    """Return AUC over damaged area with intervals: a panel per variant, a marker per fault; dotted: targets.
 
-    Faults whose states do not differ in length stand in the tables only, unless there are no others.
+    Faults whose states do not differ in area stand in the tables only, unless there are no others.
     """
-    lines = [line for line in _ladders(variants) if differ_in_length(line[2])] or _ladders(variants)
+    lines = [line for line in _ladders(variants) if differ_in_area(line[2])] or _ladders(variants)
     names = list(dict.fromkeys(name for name, _, _ in lines))
     faults = list(dict.fromkeys(fault for _, fault, _ in lines))
     figure, axes = new_figure(len(names), 1, height_in=0.9 + 1.9 * len(names), sharex=True, sharey=True)
@@ -396,7 +396,7 @@ def detectability_figure(variants: dict[str, list[Detectability]]) -> Figure:
     for axis, name in zip(axes[:, 0], names, strict=True):
         _frame(axis, name)
     axes[0, 0].set_xlim(0.0, 1.05 * axes[0, 0].get_xlim()[1])
-    axes[-1, 0].set_xlabel("Length of the damage along the profile [mm]")
+    axes[-1, 0].set_xlabel("Damaged area [mm²]")
     figure.supylabel("AUC against healthy [-]", fontsize=10)
     figure.legend(fontsize=8.5, loc="outside upper center", ncols=min(len(faults), 2))
     return figure
@@ -413,10 +413,18 @@ def _ladders(variants: dict[str, list[Detectability]]) -> list[tuple[str, str, l
 
 
 def _draw_ladder(axis: Any, entries: list[Detectability], colour: str, marker: str, label: str | None) -> None:
-    length = [entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]]) for entry in entries]
     value, low, high = (np.array([getattr(entry.auc, part) for entry in entries]) for part in ("value", "low", "high"))
     limits = np.nan_to_num([value - low, high - value]).clip(0.0)
-    axis.errorbar(length, value, limits, marker=marker, markersize=4, color=colour, label=label, capsize=2)
+    axis.errorbar(
+        [entry.area_mm2 for entry in entries],
+        value,
+        limits,
+        marker=marker,
+        markersize=4,
+        color=colour,
+        label=label,
+        capsize=2,
+    )
 
 
 def _frame(axis: Any, name: str) -> None:
@@ -523,17 +531,17 @@ def _detection_parts(name: str, entries: list[Detectability], audit: Audit) -> l
         return [Heading(title, 3), Paragraph("No state could be judged. The notes give the reason.")]
     caption = f"AUC against healthy on unseen gearboxes by {name}, with 95 % limits from resampled gearboxes."
     reached = [
-        f"{fault}: AUC {target:g} {_reached(length)}"
+        f"{fault}: AUC {target:g} {_reached(area)}"
         for target in TARGETS
-        for fault, length in length_at(entries, target).items()
+        for fault, area in area_at(entries, target).items()
         if not audit.gearboxes_needed
     ]
     head = ["State", "AUC [-]", *(SIZE_TITLES[size] for size in sizes)]
-    told = [Paragraph(f"Interpolated length along the profile: {'; '.join(reached)}.")] if reached else []
+    told = [Paragraph(f"Interpolated damaged area: {'; '.join(reached)}.")] if reached else []
     return [Heading(title, 3), TableBlock(head, rows, caption=caption, sortable=True), *told]
 
 
-def _reached(length: DetectedLength | None) -> str:
-    if length is None:
+def _reached(area: DetectedArea | None) -> str:
+    if area is None:
         return "not reached"
-    return f"{'below' if length.is_upper_bound else 'at'} {length.length_mm:.2f} mm"
+    return f"{'below' if area.is_upper_bound else 'at'} {area.area_mm2:.2g} mm²"

@@ -29,10 +29,10 @@ from diagnostics.audit.condition_traps import level_attackers
 from diagnostics.audit.detectability import (
     TARGETS,
     Detectability,
+    area_at,
     best_indicators,
     detections,
     features,
-    length_at,
     waveform_change,
 )
 from diagnostics.audit.envelope import QuantityShare, Realism, realism
@@ -111,10 +111,10 @@ def _entries_numbers(entries: list[Detectability], audit: Audit) -> dict[str, An
             }
             for entry in entries
         ],
-        "profile_length_mm_at_auc": {
+        "damaged_area_mm2_at_auc": {
             str(target): {
                 fault: None if audit.gearboxes_needed else reached
-                for fault, reached in length_at(entries, target).items()
+                for fault, reached in area_at(entries, target).items()
             }
             for target in TARGETS
         },

@@ -59,6 +59,11 @@ class Detectability:
     basis: str = ""
     tried: int = 0
 
+    @property
+    def area_mm2(self) -> float:
+        """Mean damaged area: pits and spalls grow in area, whether or not the longest of them grows."""
+        return self.sizes[SIZES[0]]
+
 
 def features(measured: MeasuredSet, *, paired: bool = False) -> np.ndarray:
     """Return the features averaged over channels, (records, 4), or differences from the reference, (records, 6).
@@ -107,7 +112,7 @@ def _log(values: np.ndarray) -> np.ndarray:
 
 
 def detections(measured: MeasuredSet, values: np.ndarray, seed: int = 0) -> list[Detectability]:
-    """Return the detection of every damaged state, by fault and profile length.
+    """Return the detection of every damaged state, by fault and damaged area.
 
     Parameters
     ----------
@@ -142,11 +147,8 @@ def damage_sizes(measured: MeasuredSet, rows: np.ndarray) -> dict[str, float]:
 
 
 def in_order(entries: list[Detectability]) -> list[Detectability]:
-    """Return detections by fault, profile length and area."""
-    return sorted(
-        entries,
-        key=lambda entry: (entry.fault, entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]]), entry.sizes[SIZES[0]]),
-    )
+    """Return detections by fault and damaged area."""
+    return sorted(entries, key=lambda entry: (entry.fault, entry.area_mm2))
 
 
 def state_auc(values: np.ndarray, positive: np.ndarray, specimen: np.ndarray, seed: int) -> np.ndarray:
@@ -191,17 +193,17 @@ class BalancedLogistic:
 
 
 @dataclass(frozen=True, slots=True)
-class DetectedLength:
-    """Profile length [mm] at which an AUC is reached; an upper bound where the smallest damage exceeds it already."""
+class DetectedArea:
+    """Damaged area [mm²] at which an AUC is reached; an upper bound where the smallest damage exceeds it already."""
 
-    length_mm: float
+    area_mm2: float
     is_upper_bound: bool
 
 
-def length_at(entries: list[Detectability], target: float) -> dict[str, DetectedLength | None]:
-    """Return by fault the profile length at which the AUC first reaches a target, linear between states; None if never.
+def area_at(entries: list[Detectability], target: float) -> dict[str, DetectedArea | None]:
+    """Return by fault the damaged area at which the AUC first reaches a target, linear between states; None if never.
 
-    A fault whose states do not differ in length, such as spalls that grow along the face, is left out.
+    A fault without a damaged area, or with two states of one area, is left out.
 
     Parameters
     ----------
@@ -210,27 +212,27 @@ def length_at(entries: list[Detectability], target: float) -> dict[str, Detected
     target : float
         AUC.
     """
-    judged = [entry for entry in entries if math.isfinite(entry.auc.value) and entry.sizes.get(SIZES[2], 0.0) > 0.0]
+    judged = [entry for entry in entries if math.isfinite(entry.auc.value) and entry.area_mm2 > 0.0]
     ladders = {fault: [entry for entry in judged if entry.fault == fault] for fault in (e.fault for e in entries)}
-    return {fault: _first_reaching(found, target) for fault, found in ladders.items() if differ_in_length(found)}
+    return {fault: _first_reaching(found, target) for fault, found in ladders.items() if differ_in_area(found)}
 
 
-def differ_in_length(entries: list[Detectability]) -> bool:
-    """Return whether states differ in profile length, so that they can be ranked by it."""
-    lengths = sorted(entry.sizes.get(SIZES[2], entry.sizes[SIZES[0]]) for entry in entries)
-    return all(high > low * (1.0 + 1e-6) for low, high in pairwise(lengths))
+def differ_in_area(entries: list[Detectability]) -> bool:
+    """Return whether states differ in damaged area, so that they can be ranked by it."""
+    areas = sorted(entry.area_mm2 for entry in entries)
+    return all(high > low * (1.0 + 1e-6) for low, high in pairwise(areas))
 
 
-def _first_reaching(entries: list[Detectability], target: float) -> DetectedLength | None:
+def _first_reaching(entries: list[Detectability], target: float) -> DetectedArea | None:
     first = next((place for place, entry in enumerate(entries) if entry.auc.value >= target), None)
     if first is None:
         return None
-    length, auc = entries[first].sizes[SIZES[2]], entries[first].auc.value
+    area, auc = entries[first].area_mm2, entries[first].auc.value
     if first == 0:
-        return DetectedLength(length, True)
-    below, auc_below = entries[first - 1].sizes[SIZES[2]], entries[first - 1].auc.value
+        return DetectedArea(area, True)
+    below, auc_below = entries[first - 1].area_mm2, entries[first - 1].auc.value
     share = (target - auc_below) / (auc - auc_below)
-    return DetectedLength(below + share * (length - below), False)
+    return DetectedArea(below + share * (area - below), False)
 
 
 DEALS = 10

@@ -440,14 +440,6 @@ FEWEST_RUNS = 3
 
 BLOCK = 512
 
-TRIVIAL = (
-    "healthy_without_sidebands",
-    "slight_separable_by",
-    "state_tied_to",
-    "state_told_by",
-    "constant_damage_phase",
-)
-
 
 def shared_specimens(measured: MeasuredSet) -> Iterator[Finding]:
     """Yield a finding if a specimen occurs in more than one split."""
@@ -668,6 +660,7 @@ def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]
 def verdict(findings: Sequence[Finding], specimens: int, chance: ChanceLimit | None = None, missing: str = "") -> str:
     """Return what the findings mean for scores on a set of so many specimens, beside what chance reaches there.
 
+    Of several findings the first says what is told, by what, and how to correct it; the others are named.
     `missing` says which records the set has none of, `healthy` or `damaged`.
     """
     if not findings and missing:
@@ -690,11 +683,6 @@ def verdict(findings: Sequence[Finding], specimens: int, chance: ChanceLimit | N
         return (
             "No trap was found. As far as the audit can see, scores on unseen specimens of this set measure the damage."
         )
-    trivial = [finding.trap for finding in findings if finding.trap.startswith(TRIVIAL)]
-    if trivial:
-        return (
-            f"The set is trivially separable ({', '.join(trivial)}). A detection score on it says nothing about real "
-            "gearboxes."
-        )
-    found = "A trap was" if len(findings) == 1 else f"{len(findings)} traps were"
-    return f"{found} found. Scores on this set do not measure what they seem to measure."
+    first, *others = findings
+    more = f" {counted(len(others), 'further trap')} found: {', '.join(one.trap for one in others)}." if others else ""
+    return f"Scores on this set do not measure damage alone: {first.measured}. To correct it: {first.mend}{more}"

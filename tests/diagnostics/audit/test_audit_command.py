@@ -51,7 +51,7 @@ def test_a_finding_fails_with_strict(
     monkeypatch.setattr(reading, "open", lambda path: perfect_gears)
     assert run(monkeypatch, "anything", "--out", str(tmp_path), "--strict") == 4
     shown = capsys.readouterr()
-    assert "trivially separable" in shown.out
+    assert shown.out.startswith("Scores on this set do not measure damage alone: ")
     assert "healthy_without_sidebands" in shown.out
     assert "--strict" in shown.err
     numbers = json.loads((tmp_path / "audit.json").read_text())
@@ -101,9 +101,9 @@ def test_too_few_gearboxes_do_not_pass_and_no_file_names_a_length(
     for text in (shown.out, page, json.dumps(numbers)):
         assert "No trap was found" not in text
         assert "is reached from" not in text
-        assert "Interpolated length" not in text
-    lengths = [entries["profile_length_mm_at_auc"] for entries in numbers["strongest"].values()]
-    assert {length for by_auc in lengths for faults in by_auc.values() for length in faults.values()} <= {None}
+        assert "Interpolated damaged area" not in text
+    areas = [entries["damaged_area_mm2_at_auc"] for entries in numbers["strongest"].values()]
+    assert {area for by_auc in areas for faults in by_auc.values() for area in faults.values()} <= {None}
 
 
 def test_a_folder_without_a_set_is_a_usage_error(

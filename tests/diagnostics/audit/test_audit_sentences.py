@@ -40,8 +40,8 @@ def test_the_strongest_attacker_is_named_with_interval_and_number_and_lost_means
     assert "is best band: AUC 0.97 (0.92 to 1.02), most often orders 9 to 40 among 300\xa0columns." in found[2]
     assert "8\xa0attackers stays below an AUC of 0.66 in 95 % of 100 permutations" in found[3]
     assert found[4] == "No attacker found mild. These failed: the best single indicator and indicators."
-    # of the attackers alone: linear between the states, 0.5 + 0.5 (0.75 - 0.5) / 0.47
-    assert "0.75 is reached from 0.77\xa0mm of spalling by strongest attacker alone" in found[5]
+    # of the attackers alone: linear between the states, 20 (0.5 + 0.5 (0.75 - 0.5) / 0.47)
+    assert "0.75 is reached from 15\xa0mm² of spalling by strongest attacker alone" in found[5]
 
 
 def test_what_an_attacker_reaches_on_a_sham_is_no_damage() -> None:
@@ -107,7 +107,7 @@ def test_a_single_state_is_neither_hardest_nor_easiest(auc: float) -> None:
     found = audit_summary(replace(AUDIT, detections={"indicators": [detection("severe", 1.0, auc)]}, best=best))
     assert not any("hardest" in sentence for sentence in found)
     assert any("The damaged state is severe. The strongest" in sentence for sentence in found) == (auc == 0.9)
-    assert any("at most 1.00\xa0mm" in sentence for sentence in found) == (auc == 0.9)
+    assert any("at most 20\xa0mm²" in sentence for sentence in found) == (auc == 0.9)
     assert "nan" not in " ".join(found)
 
 

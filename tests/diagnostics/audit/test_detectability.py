@@ -1,4 +1,4 @@
-"""AUC of planted effects, pairs of records, and the interpolated length of damage."""
+"""AUC of planted effects, pairs of records, and the interpolated area of damage."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from planted_set import Plant, measured
 
 from diagnostics.audit.detectability import (
     Detectability,
+    area_at,
     dealt,
     detections,
     features,
-    length_at,
     state_auc,
     waveform_change,
 )
@@ -107,9 +107,9 @@ def test_paired_differences_and_waveforms_find_the_pulse(repeated: MeasuredSet) 
         assert found["severe"] > 0.95
 
 
-def entry(length: float, auc: float, fault: str = "spalling") -> Detectability:
-    sizes = {"damaged_area_mm2": length, "damage_profile_length_mm": length}
-    return Detectability(f"s{length}", fault, sizes, Interval(auc, auc - 0.1, auc + 0.1), 20)
+def entry(area: float, auc: float, fault: str = "spalling") -> Detectability:
+    sizes = {"damaged_area_mm2": area, "damage_profile_length_mm": 0.4}
+    return Detectability(f"s{area}", fault, sizes, Interval(auc, auc - 0.1, auc + 0.1), 20)
 
 
 def test_damage_through_the_face_is_a_kind_of_its_own(repeated: MeasuredSet) -> None:
@@ -119,18 +119,18 @@ def test_damage_through_the_face_is_a_kind_of_its_own(repeated: MeasuredSet) -> 
     assert kinds["severe"] == f"{kinds['slight']} through the face"
 
 
-def test_length_at_an_auc_is_interpolated_between_states_of_one_fault() -> None:
-    found = length_at([entry(0.5, 0.6), entry(1.0, 0.8), entry(2.0, 0.9), entry(1.0, 0.5, "pitting")], 0.85)
+def test_area_at_an_auc_is_interpolated_between_states_that_grow_in_area_alone() -> None:
+    found = area_at([entry(0.5, 0.6), entry(1.0, 0.8), entry(2.0, 0.9), entry(1.0, 0.5, "pitting")], 0.85)
     assert found["spalling"] is not None
-    assert found["spalling"].length_mm == pytest.approx(1.5)
+    assert found["spalling"].area_mm2 == pytest.approx(1.5)
     assert not found["spalling"].is_upper_bound
     assert found["pitting"] is None
-    first = length_at([entry(0.5, 0.9)], 0.85)["spalling"]
+    first = area_at([entry(0.5, 0.9)], 0.85)["spalling"]
     assert first is not None
     assert first.is_upper_bound
 
 
-def test_states_of_one_length_give_no_length_at_an_auc() -> None:
-    along_the_face = [entry(1.0, 0.6), entry(1.0, 0.7), entry(1.0, 0.9)]
-    assert length_at(along_the_face, 0.85) == {}
-    assert length_at([*along_the_face, entry(0.5, 0.9, "pitting")], 0.85).keys() == {"pitting"}
+def test_states_of_one_area_give_no_area_at_an_auc() -> None:
+    of_one_area = [entry(1.0, 0.6), entry(1.0, 0.7), entry(1.0, 0.9)]
+    assert area_at(of_one_area, 0.85) == {}
+    assert area_at([*of_one_area, entry(0.5, 0.9, "pitting")], 0.85).keys() == {"pitting"}
