@@ -27,13 +27,14 @@ if TYPE_CHECKING:
     from siggen.publication.publish import publish
     from siggen.sets.generation import generate
     from siggen.sets.recorded_set import write_recorded_set
+    from siggen.sets.streaming import stream
 
 __all__ = [
     "BearingSpall", "Case", "Channel", "Chip", "Crack", "Curve", "Damage", "Gear", "GearPair", "Gearbox",
     "LineOrders", "Pit", "Point", "Reading", "Record", "Sensor", "Spall", "Spectrum", "State", "Wear", "draw",
     "flank_picture", "generate", "load_config", "machine", "mesh_stiffness",
     "open", "pits_in_layers", "plan", "planetary", "publish",
-    "random_pits", "run", "runs", "single_stage", "write_csv", "write_recorded_set",
+    "random_pits", "run", "runs", "single_stage", "stream", "write_csv", "write_recorded_set",
 ]  # fmt: skip
 
 _NAMES = {
@@ -53,6 +54,7 @@ _NAMES = {
     "siggen.publication.publish": "publish",
     "siggen.sets.generation": "generate",
     "siggen.sets.recorded_set": "write_recorded_set",
+    "siggen.sets.streaming": "stream",
 }
 """Module -> public names that it defines."""
 _HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}

@@ -32,6 +32,7 @@ class Stream(IntEnum):
     PAIRS = 17
     PAIR_ORDER = 18
     LIFE = 19
+    STREAM_ORDER = 20
 
 
 OWNER_KEYS: dict[Stream, int] = {
@@ -54,6 +55,7 @@ OWNER_KEYS: dict[Stream, int] = {
     Stream.PAIRS: 1,
     Stream.PAIR_ORDER: 1,
     Stream.LIFE: 1,
+    Stream.STREAM_ORDER: 1,
 }
 """Number of owner keys per stage; fixed, since (1,) and (1, 0) are different streams."""
 

@@ -74,6 +74,7 @@ def test_integers_of_stages_are_part_of_every_identity():
         "PAIRS": 17,
         "PAIR_ORDER": 18,
         "LIFE": 19,
+        "STREAM_ORDER": 20,
     }
 
 

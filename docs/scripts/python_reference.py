@@ -15,6 +15,7 @@ from typing import Any
 
 import siggen
 from siggen.dataset.reading import Dataset
+from siggen.sets.streaming import RecordStream
 
 ROOT = Path(__file__).parents[2]
 GROUPS = {
@@ -123,7 +124,10 @@ def page() -> str:
     for title, names in groups.items():
         parts.append(f"## {title}\n")
         parts += [entry(name, getattr(siggen, name)) + "\n" for name in names]
-    parts.append(entry("open(...)", Dataset).replace("`siggen.open(...)`", "What `siggen.open` returns") + "\n")
+    for name, returned in (("open", Dataset), ("stream", RecordStream)):
+        parts.append(
+            entry(f"{name}(...)", returned).replace(f"`siggen.{name}(...)`", f"What `siggen.{name}` returns") + "\n"
+        )
     return "\n".join([*parts, of_diagnostics()])
 
 

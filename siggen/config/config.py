@@ -41,6 +41,7 @@ from siggen.sensors.registry import SensorSection
 
 BLOCK = 20
 """Specimens per block in which the splits are met exactly."""
+MOST_SPECIMENS = 10_000_000
 
 
 SHARES = "of every 20 gearboxes (or pairs), for fitting, for choosing and for judging"
@@ -94,7 +95,7 @@ class Config(Section):
 
     name: SetName = Field(description="name of the set")
     seed: Annotated[Whole, Field(ge=0, lt=2**128)] = Field(description="where all randomness begins")
-    specimens: Annotated[Whole, Field(ge=1, le=10_000_000)] = Field(
+    specimens: Annotated[Whole, Field(ge=1, le=MOST_SPECIMENS)] = Field(
         description="number of gearboxes; not part of the identity"
     )
     fs_hz: Annotated[Real, Field(gt=0, le=1e7), Usual(200, 5e5)] = Field(default=51_200.0, description="sampling rate")

@@ -11,6 +11,7 @@ from math import ceil
 from typing import Any, NamedTuple
 
 from siggen.config import Config, by_reference, parse
+from siggen.config.config import MOST_SPECIMENS
 from siggen.config.consistency import SAMPLES_PER_PERIOD, SIDEBANDS, carried_mesh_harmonics
 from siggen.config.machine import most_teeth_per_turn, shaft_orders
 from siggen.damage.fault import Fault
@@ -73,6 +74,11 @@ class SetDesign:
     def specimens(self) -> int:
         """Number of gearboxes."""
         return self.config.specimens
+
+    @property
+    def most_specimens(self) -> int:
+        """Number of gearboxes that a configuration has, in a set or a stream."""
+        return MOST_SPECIMENS
 
     @property
     def fs_hz(self) -> float:

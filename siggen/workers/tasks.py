@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import traceback
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from itertools import chain
 from multiprocessing.reduction import ForkingPickler
 from queue import SimpleQueue
 from typing import Any, TypeVar
@@ -49,11 +50,16 @@ class Workers:
     bound_to: int | None = None
 
 
+def _always() -> bool:
+    return True
+
+
 def results(
     workers: Workers,
     function: Callable[[Task], Result],
-    tasks: Sequence[Task],
+    tasks: Iterable[Task],
     say: Callable[[str], object] | None = None,
+    room: Callable[[], bool] = _always,
 ) -> Generator[tuple[int, Result], None, None]:
     """Yield (position of the task, its result) as tasks complete. Closing it stops the work.
 
@@ -62,10 +68,12 @@ def results(
     workers : Workers
     function : callable
         Importable by name, and so is all that it carries; it goes to each worker once.
-    tasks : sequence
-        Their texts stand in messages.
+    tasks : iterable
+        Each taken when it is begun, so there may be endlessly many. Their texts stand in messages.
     say : callable, optional
         Called with a sentence on a pool that broke, and on what was under way there.
+    room : callable, optional
+        Whether another task may begin beside those under way: whoever keeps results bounds how many.
 
     Raises
     ------
@@ -73,14 +81,16 @@ def results(
         If a task raised, or pools kept breaking; names tasks.
     """
     call = _TaskCall(function, workers.bound_to)
-    left, breaks = dict(enumerate(tasks)), 0
-    while left:
+    fresh, left, breaks = enumerate(tasks), dict[int, Task](), 0
+    while True:
         under_way: list[Task] = []
         try:
             with workers.opened() as pool:
-                for position, result in _of_one_pool(pool, workers.count, call, left, under_way):
+                begun = chain(list(left.items()), fresh)
+                for position, result in _of_one_pool(pool, workers.count, call, begun, left, under_way, room):
                     breaks = 0
                     yield position, result
+            return
         except (BrokenExecutor, CancelledError) as error:
             breaks += 1
             if breaks == BREAKS:
@@ -90,20 +100,22 @@ def results(
 
 
 def _of_one_pool(
-    pool: Executor, count: int, call: _TaskCall, left: dict[int, Any], under_way: list[Any]
-) -> Iterator[tuple[int, Any]]:
-    """Yield results until all are there; `left` loses what is done, `under_way` gets what is not when a pool breaks."""
+    pool: Executor, count: int, call: _TaskCall, begun: Iterator[tuple[int, Any]], left: dict[int, Any],
+    under_way: list[Any], room: Callable[[], bool],
+) -> Iterator[tuple[int, Any]]:  # fmt: skip
+    """Yield results until all are there; `left` holds what is begun, `under_way` gets it when a pool breaks."""
     done: SimpleQueue[Future[tuple[str, Any]]] = SimpleQueue()
-    waiting = iter(list(left))
     opened: dict[Future[tuple[str, Any]], int] = {}
 
     def submit(most: int) -> None:
-        for position in waiting:
-            future = pool.submit(call, left[position])
+        while len(opened) < most and (not opened or room()):
+            position, task = next(begun, (-1, None))
+            if position < 0:
+                return
+            left[position] = task
+            future = pool.submit(call, task)
             opened[future] = position
             future.add_done_callback(done.put)
-            if len(opened) >= most:
-                return
 
     most = OPEN_PER_WORKER * count if count > 1 else 1
     try:

@@ -1,0 +1,202 @@
+"""Endless records of a design in an order that can be repeated, simulated by worker processes while they are asked for.
+
+Gearboxes are counted as those of a set, so a streamed record is the one that a set with as many gearboxes holds. So
+many gearboxes at a time are mixed: their records come in an order that seed and place alone decide, whoever simulates
+which of them first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from concurrent.futures import Executor
+from contextlib import closing
+from itertools import count
+from typing import Any
+
+import numpy as np
+
+from siggen.columns.record import RecordFailure
+from siggen.dataset.reading import as_record
+from siggen.dataset.simulated_rows import SimulatedRows
+from siggen.errors import UsageError
+from siggen.gearbox.design import SetDesign, expect_design
+from siggen.gearbox.plan import record_ids_of
+from siggen.record.compilation import run_part
+from siggen.seeding import Stream, generator
+from siggen.sets import physics as contents
+from siggen.workers.choice import workers_of
+from siggen.workers.tasks import OPEN_PER_WORKER, results
+
+MIXED = 16
+"""Gearboxes whose records are mixed: of `quickstart` 80 records, 30 MB."""
+
+
+class RecordStream:
+    """Endless records; iterate it. What `siggen.stream` returns.
+
+    A record is a mapping as `siggen.open(...).record` returns it: labels, channels as float32 (n,), `tacho_s`. Leaving
+    the loop ends the workers; iterating again goes on behind what was yielded.
+
+    Attributes
+    ----------
+    failures
+        Records that could not be simulated since the stream was made; the stream goes on behind them.
+    """
+
+    def __init__(
+        self, design: SetDesign, first_gearbox: int, seed: int, mixed: int, share: tuple[int, int],
+        workers: int | None, executor: Executor | str | None,
+    ) -> None:  # fmt: skip
+        self.design, self.first_gearbox, self.seed, self.mixed = design, first_gearbox, seed, mixed
+        self.rank, self.ranks = share
+        self.failures: list[RecordFailure] = []
+        self._workers = workers_of(executor, workers)
+        self._passed = 0
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        """Yield records from the present place on."""
+        physics = contents.physics()
+        self._compile(physics)
+        each = self.design.records_per_specimen
+        block, passed = divmod(self._passed, self.mixed * each)
+        order = self._order(block)
+        made: dict[int, SimulatedRows] = {}
+        wanted = first = block * self.mixed
+
+        def room() -> bool:
+            # what is mixed, and what workers have under way while it is used up
+            return len(made) < 2 * self.mixed + OPEN_PER_WORKER * self._workers.count
+
+        tasks = (self._record_ids(number) for number in count(first))
+        simulation = physics.simulation(self.design)
+        with closing(results(self._workers, simulation, tasks, room=room)) as answers:
+            while True:
+                while any(number not in made for number in range(wanted, wanted + self.mixed)):
+                    number, rows = next(answers)
+                    made[first + number] = rows
+                for place in order[passed:]:
+                    gearbox, record = divmod(int(place), each)
+                    self._passed += 1
+                    found = self._found(made[wanted + gearbox], self._record_ids(wanted + gearbox)[record])
+                    if found is not None:
+                        yield found
+                for number in range(wanted, wanted + self.mixed):
+                    del made[number]
+                wanted, block, passed = wanted + self.mixed, block + 1, 0
+                order = self._order(block)
+
+    def state_dict(self) -> dict[str, Any]:
+        """Return the place behind the last record as plain values."""
+        return {"passed": self._passed, **self._facts()}
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Go on where another stream was; its block of mixed gearboxes is simulated once more.
+
+        Raises
+        ------
+        UsageError
+            If that stream had another configuration, gearboxes, seed or share.
+        """
+        facts = self._facts()
+        differing = [f"{name} {state.get(name)!r} instead of {facts[name]!r}" for name in facts
+                     if state.get(name) != facts[name]]  # fmt: skip
+        passed = state.get("passed")
+        if differing or type(passed) is not int or passed < 0:
+            what = ", ".join(differing) or f"passed {passed!r}"
+            raise UsageError(
+                f"the place belongs to another stream: it has {what}. Make the stream with the same configuration and "
+                "arguments, or begin anew"
+            )
+        self._passed = passed
+
+    def _facts(self) -> dict[str, Any]:
+        return {
+            "configuration": self.design.identity, "first_gearbox": self.first_gearbox, "seed": self.seed,
+            "mixed": self.mixed, "rank": self.rank, "ranks": self.ranks,
+        }  # fmt: skip
+
+    def _record_ids(self, number: int) -> range:
+        """Return the records of the gearbox with a number of this share's."""
+        block, place = divmod(number, self.mixed)
+        gearbox = self.first_gearbox + (block * self.ranks + self.rank) * self.mixed + place
+        if gearbox >= self.design.most_specimens:
+            raise UsageError(
+                f"the stream has come to gearbox {gearbox}; a configuration has {self.design.most_specimens} of them"
+            )
+        return record_ids_of(self.design, gearbox)
+
+    def _order(self, block: int) -> np.ndarray:
+        """Return in which order the records of a block of gearboxes come."""
+        drawn = generator(self.seed, Stream.STREAM_ORDER, block * self.ranks + self.rank)
+        return drawn.permutation(self.mixed * self.design.records_per_specimen)
+
+    def _found(self, rows: SimulatedRows, record_id: int) -> dict[str, Any] | None:
+        """Return a record; of one that failed nothing, and what it was is kept."""
+        for failure in rows.failures:
+            if failure.record_id == record_id:
+                self.failures.append(failure)
+                return None
+        places: list[int] = rows.rows["record_id"].to_pylist()
+        return as_record(rows.rows.slice(places.index(record_id), 1))
+
+    def _compile(self, physics: contents.Physics) -> None:
+        """Compile once for all workers, which would compile the same side by side."""
+        parts = physics.to_compile(self.design) if self._workers.name == "processes" else ()
+        with closing(results(self._workers, run_part, parts)) as compiled:
+            for _ in compiled:
+                pass
+
+
+def stream(
+    design: SetDesign,
+    *,
+    first_gearbox: int | None = None,
+    seed: int = 0,
+    mixed: int = MIXED,
+    rank: int = 0,
+    ranks: int = 1,
+    workers: int | None = None,
+    executor: Executor | str | None = None,
+) -> RecordStream:
+    """Return endless records of a design, simulated by worker processes as they are asked for; nothing is written.
+
+    Records and their order depend on the design and on `first_gearbox`, `seed`, `mixed`, `rank` and `ranks` alone.
+
+    Parameters
+    ----------
+    design : SetDesign
+        What `load_config` returns.
+    first_gearbox : int, optional
+        Number of the first gearbox; default: the first behind those of the set, so that none is in both.
+    seed : int
+        Of the order.
+    mixed : int
+        Gearboxes whose records are mixed, and which are in memory at a time.
+    rank, ranks : int
+        Which of how many processes that train together this is: every gearbox goes to one of them.
+    workers : int, optional
+        Worker processes, by default one per core.
+    executor : Executor or str, optional
+        As of `generate`; 'serial' simulates in this process.
+
+    Raises
+    ------
+    UsageError
+        If an argument cannot be, or the gearboxes run to failure or are never damaged.
+    """
+    expect_design(design)
+    if design.lives:
+        raise UsageError("design: received one with `life`; allowed: one with `states`; a life has an order of its own")
+    if not design.damaged_states(0):
+        raise UsageError("design: received states without damage; a stream is to learn from: give a state `damages`")
+    if workers == 0:
+        raise UsageError("workers: received 0; allowed: 1, 2 and so on, or None; executor='serial' is this process")
+    first = design.specimens if first_gearbox is None else first_gearbox
+    for name, value, least, most in (
+        ("first_gearbox", first, 0, design.most_specimens - 1), ("seed", seed, 0, 2**63 - 1),
+        ("mixed", mixed, 1, 10_000), ("ranks", ranks, 1, 100_000),
+        ("rank", rank, 0, ranks - 1 if type(ranks) is int else 0),
+    ):  # fmt: skip
+        if type(value) is not int or not least <= value <= most:
+            raise UsageError(f"{name}: received {value!r}; allowed: whole numbers from {least} to {most}")
+    return RecordStream(design, first, seed, mixed, (rank, ranks), workers, executor)
