@@ -9,9 +9,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from diagnostics.bench.leaderboard import leaderboard
+    from diagnostics.bench.leaderboard import benchmark_baselines, leaderboard
     from diagnostics.bench.making import commit_benchmark, make_benchmark, reveal_benchmark
-    from diagnostics.bench.questions import benchmark_baselines
     from diagnostics.indicators.classifier_table import table
     from diagnostics.judging.alarms import evaluate
     from diagnostics.loader.window_arrays import windows
@@ -42,7 +41,7 @@ _HOMES = {
     "make_benchmark": "diagnostics.bench.making",
     "commit_benchmark": "diagnostics.bench.making",
     "reveal_benchmark": "diagnostics.bench.making",
-    "benchmark_baselines": "diagnostics.bench.questions",
+    "benchmark_baselines": "diagnostics.bench.leaderboard",
     "leaderboard": "diagnostics.bench.leaderboard",
     "open_benchmark": "diagnostics.scoring.benchmark",
     "score_benchmark": "diagnostics.scoring.benchmark_scores",

@@ -1,29 +1,46 @@
-"""A page that says who stands where on a benchmark: every file of predictions in a folder, beside the baselines.
+"""Who stands where on a benchmark: what its baselines predict, and the page of all entries.
 
-Entries are ordered by the mean over the test parts of the score that ranks, the best first. Differences are paired on
-the same resampled gearboxes, and stand beside the leader of each table. Gearboxes of different parts are independent,
-so the mean over parts is taken resample by resample.
+Baselines are what anybody's detector is compared with, each learned on the part to learn from alone. The stack weighs
+others by logistic regression on what they say of gearboxes that they have not seen (nested folds); so nothing is chosen
+on a test part. Source: stacked generalisation (Wolpert 1992), standard literature. Everything comes from the one table
+of each set. What depends on a set, such as levels of convolutions, depends on the records to learn from alone: a test
+record is judged by itself, whatever stands beside it. Baselines of lives count hours by what wears as much in the part
+to learn from: the load of every part and the exponent of torque are published.
+
+The page has every file of predictions in a folder, beside the baselines. Entries are ordered by the mean over the test
+parts of the score that ranks, the best first. Differences are paired on the same resampled gearboxes, and stand beside
+the leader of each table. Gearboxes of different parts are independent, so the mean over parts is taken resample by
+resample.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import partial
 from pathlib import Path
 from statistics import NormalDist
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
+from pyarrow import parquet
 
+from diagnostics.audit.averaged_lines import band_bank, kurtogram_maximum, line_array, residual_lines
+from diagnostics.audit.detectability import ADDED, LEVELS, PLAIN
+from diagnostics.audit.signal_attackers import convolution_features, level_waves, over_channels
 from diagnostics.base.beside import beside
-from diagnostics.base.extras import missing_packages
+from diagnostics.base.extras import missing_packages, require_packages
+from diagnostics.base.process_pool import process_pool
 from diagnostics.base.seeding import Purpose, generator
-from diagnostics.bench.baselines import CHANCE_OWNER, REFERENCE
-from diagnostics.bench.conditions import parts_of
-from diagnostics.bench.question import Ranking
-from diagnostics.bench.questions import question_of
+from diagnostics.base.single_thread import single_thread
+from diagnostics.bench.question import LIFE_CONDITIONS, LIFE_QUESTION, Question, is_alone, parts_of, question_of
+from diagnostics.indicators.classifier_table import check_table, classifier_table, feature_matrix
+from diagnostics.indicators.matrix import FeatureMatrix
+from diagnostics.indicators.table import record_table
+from diagnostics.judging.evaluation import Design, Entry, pooled_scores
+from diagnostics.judging.learners import BestColumn, Odds
 from diagnostics.page.blocks import (
     Block,
     Cell,
@@ -39,14 +56,387 @@ from diagnostics.page.style import png_bytes
 from diagnostics.page.tables import interval_cell
 from diagnostics.page.template import write_page
 from diagnostics.page.wording import capitalised, decimal, minus
+from diagnostics.records.state_classes import HEALTHY, SHAM
 from diagnostics.scoring.benchmark import BASELINES, Benchmark, labels_of, open_benchmark
 from diagnostics.scoring.benchmark_scores import JudgedPart, judged_parts, part_columns
-from diagnostics.scoring.prediction_file import CLASSIFIER, PREDICTIONS_FILE, prediction_table
+from diagnostics.scoring.detect import DAMAGE
+from diagnostics.scoring.prediction_file import CLASSIFIER, IDENTITY_KEY, PREDICTIONS_FILE, RECORD, prediction_table
+from diagnostics.scoring.remaining_life import COLUMNS
 from diagnostics.scoring.score_rows import ScoreRow, score_figure
 from diagnostics.statistics.evaluation import RESAMPLES, Interval, area_interval, bootstrap_weights, interval
+from diagnostics.training.average_rows import AveragedRecords, padded_lines
+from diagnostics.training.feature_classifier import DEFAULT_STRENGTH
+from diagnostics.training.lives import Inspections, blind_inspections, inspections_of, predictors
+from diagnostics.training.referenced import log_values
+from diagnostics.training.splits import SpecimenSplit
 from siggen.errors import UsageError, counted
 from siggen.file_writing import write_file
 from siggen.plain_json import json_text
+
+CHUNK = 400
+"""Records whose bands are taken at once."""
+
+
+@dataclass(frozen=True, slots=True)
+class BenchRecords:
+    """Records of all sets, those to learn from first.
+
+    Attributes
+    ----------
+    matrix : FeatureMatrix
+        Indicators with labels.
+    lines : (records, channels, orders) complex128
+        Averaged lines, of the orders that those to learn from have.
+    reference : (records,) int
+        Row of the first healthy record of the gearbox at its operating point, -1 for itself.
+    asked : (records,) bool
+        Records to learn from, and those of the split test of test parts.
+    alone : (records,) bool
+        Records to learn from, and those of test parts of which a gearbox has one record.
+    learn : int
+        How many records are to learn from.
+    channels : tuple of str
+    teeth : str
+        Label of the teeth of the shaft that was averaged.
+    """
+
+    matrix: FeatureMatrix
+    lines: np.ndarray
+    reference: np.ndarray
+    asked: np.ndarray
+    alone: np.ndarray
+    learn: int
+    channels: tuple[str, ...]
+    teeth: str
+
+
+@dataclass(frozen=True, slots=True)
+class SeenRecords:
+    """Records to learn from, then those of the test parts.
+
+    Attributes
+    ----------
+    matrix : FeatureMatrix
+        Indicators; beside a reference the differences of their logarithms.
+    learn : int
+        How many records are to learn from.
+    damaged : (learn,) bool
+    kurtogram : (records,) float64
+        Largest kurtosis of the envelope over all bands.
+    bands : (records, columns) float64
+    convolutions : (records, columns) float64
+    averages : AveragedRecords
+    referenced : bool
+    """
+
+    matrix: FeatureMatrix
+    learn: int
+    damaged: np.ndarray
+    kurtogram: np.ndarray
+    bands: np.ndarray
+    convolutions: np.ndarray
+    averages: AveragedRecords
+    referenced: bool
+
+    @property
+    def gearbox(self) -> np.ndarray:
+        """(learn,) int: gearboxes of the records to learn from."""
+        return np.asarray(self.matrix.groups[: self.learn])
+
+    def tests(self) -> np.ndarray:
+        """Return the numbers of the test records."""
+        return np.asarray(self.matrix.labels["record_id"][self.learn :])
+
+
+def benchmark_records(benchmark: Benchmark, workers: int) -> BenchRecords:
+    """Return the records of all sets of a benchmark; indicators from some processes."""
+    learn = benchmark.learn()
+    first = record_table(learn, workers=workers)
+    check_table(first, learn)  # test records are answered whatever they are
+    tables = [first, *(record_table(benchmark.part(name), workers=workers) for name in benchmark.parts)]
+    matrices = [feature_matrix(classifier_table(table)) for table in tables]
+    labels = {name: np.concatenate([one.labels[name] for one in matrices]) for name in matrices[0].labels}
+    matrix = replace(matrices[0], values=np.concatenate([one.values for one in matrices]), labels=labels)
+    waveforms = [row for table in tables for row in table.complex_rows("waveform")]
+    count = len(matrices[0].values)
+    orders = max(lines.size for row in waveforms[:count] for lines in row)
+    asked = (np.arange(len(matrix.values)) < count) | (labels["split"] == "test")
+    lines = line_array(waveforms)[..., : max(orders, 1)]
+    ways = [True, *map(is_alone, benchmark.parts)]
+    alone = np.repeat(ways, [len(one.values) for one in matrices])
+    return BenchRecords(matrix, lines, _references(labels), asked, alone, count, first.channels, first.teeth[0])
+
+
+def _references(labels: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Return the row of the first healthy record of each one's gearbox and operating point; -1 for itself."""
+    first: dict[tuple[int, int], int] = {}
+    places = list(zip(labels["specimen_id"].tolist(), labels["operating_point_id"].tolist(), strict=True))
+    for row in np.flatnonzero((labels["fault"] == HEALTHY) & (labels["state"] != SHAM)).tolist():
+        first.setdefault(places[row], row)
+    found = np.array([first.get(place, -1) for place in places], dtype=np.int64)
+    return np.where(found == np.arange(found.size), -1, found)
+
+
+def seen_records(records: BenchRecords, *, referenced: bool) -> SeenRecords:
+    """Return what baselines see; records without a reference are left out if asked for.
+
+    Parameters
+    ----------
+    records : BenchRecords
+    referenced : bool
+        Whether every record stands beside a healthy one of its gearbox.
+    """
+    kept = np.flatnonzero(records.asked & (records.reference >= 0 if referenced else records.alone))
+    matrix, lines = records.matrix.rows(kept), records.lines[kept]
+    teeth, learn = matrix.labels[records.teeth], int((kept < records.learn).sum())
+    difference, known, beside = residual_lines(lines, teeth), None, None
+    if referenced:
+        reference = records.reference[kept]
+        logarithms = log_values(records.matrix.values)
+        matrix = replace(matrix, values=logarithms[kept] - logarithms[reference])
+        known = residual_lines(records.lines[reference], teeth)
+        difference, beside = difference - known, _as_averages(records.lines[reference])
+    highest, bands = _in_chunks(difference, known)
+    return SeenRecords(
+        matrix=matrix,
+        learn=learn,
+        damaged=np.asarray(matrix.labels["fault"][:learn] != HEALTHY),
+        kurtogram=highest,
+        bands=bands,
+        convolutions=convolution_features(level_waves(difference, known), learn),
+        averages=AveragedRecords(_as_averages(lines), teeth, records.channels, beside),
+        referenced=referenced,
+    )
+
+
+def _as_averages(lines: np.ndarray) -> np.ndarray:
+    return padded_lines([list(row) for row in lines.astype(np.complex64)])
+
+
+def _in_chunks(difference: np.ndarray, known: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+    """Return the kurtogram and the columns of all bands, a few hundred records at once: each asks for megabytes."""
+    highest, bands = [], []
+    for start in range(0, len(difference), CHUNK):
+        rows = slice(start, start + CHUNK)
+        highest.append(np.nanmean(kurtogram_maximum(difference[rows]), axis=1))
+        bands.append(over_channels(*band_bank(difference[rows], None if known is None else known[rows]))[0])
+    return np.concatenate(highest), np.concatenate(bands)
+
+
+REFERENCE = "reference"
+BESIDE = ", beside a healthy record"
+TRACKS = (False, True)
+"""Alone, and beside a reference."""
+FOLDS, LEFT_OUT = 4, 5
+CHANCE_OWNER = 4242
+"""Owner of the generator of the baseline without knowledge: permutations have others."""
+CHANCE, RMS, KURTOGRAM, SIX, BAND = "chance", "RMS alone", "kurtogram", "six columns", "best band"
+BOOSTING, CONVOLUTIONS, NETWORK, STACK = "gradient boosting", "random convolutions", "1-D network", "stack"
+STACKED = (KURTOGRAM, BAND, BOOSTING, CONVOLUTIONS, NETWORK)
+
+
+class AsItIs:
+    """A number that nothing is learnt for."""
+
+    def fit(self, X: np.ndarray, y: np.ndarray, groups: np.ndarray) -> AsItIs:  # noqa: ARG002
+        """Learn nothing."""
+        return self
+
+    def score(self, X: np.ndarray) -> np.ndarray:
+        """Return the number."""
+        return X
+
+
+class StoppedNetwork:
+    """The 1-D network; every fifth gearbox says when to stop. X are places of records; scores are log odds."""
+
+    def __init__(self, records: AveragedRecords, stops: np.ndarray, seed: int) -> None:
+        self.records, self.stops, self.seed = records, stops, seed
+
+    def fit(self, X: np.ndarray, y: np.ndarray, groups: np.ndarray) -> StoppedNetwork:  # noqa: ARG002
+        """Train."""
+        from diagnostics.training.cnn import train_network
+
+        stops = self.stops[X]
+        learn, chooses, nobody = (np.zeros(len(self.records.teeth), dtype=bool) for _ in range(3))
+        learn[X[~stops]], chooses[X[stops]] = True, True
+        target = np.zeros(learn.size, dtype=np.int64)
+        target[X] = y
+        split = SpecimenSplit(learn, chooses, nobody, ("healthy", "damaged"))
+        self.network = train_network(self.records, target, split, self.seed).network
+        return self
+
+    def score(self, X: np.ndarray) -> np.ndarray:
+        """Return the logarithm of the odds."""
+        from diagnostics.training.cnn import network_probability
+
+        probability = np.clip(network_probability(self.network, self.records.chosen(X))[:, 1], 1e-12, 1.0 - 1e-12)
+        return np.asarray(np.log(probability) - np.log1p(-probability))
+
+
+def entries(seen: SeenRecords, seed: int) -> list[Entry]:
+    """Return the baselines without the stack; the network only with PyTorch."""
+    from sklearn.linear_model import RidgeClassifierCV
+    from sklearn.pipeline import make_pipeline
+    from sklearn.preprocessing import StandardScaler
+
+    from diagnostics.training.classifiers import DEFAULT_TREES, BoostingBaseline, LogisticBaseline
+
+    every = np.ones(len(seen.kurtogram), dtype=bool)
+    gearbox = np.unique(seen.gearbox, return_inverse=True)[1]
+    stops = gearbox % LEFT_OUT == LEFT_OUT - 1
+
+    def logistic() -> Odds:
+        return Odds(LogisticBaseline((DEFAULT_STRENGTH,), take_logarithms=not seen.referenced))
+
+    def ridge() -> Odds:
+        """Return ridge regression whose penalty is chosen by leaving one record out, as MiniRocket does."""
+        model = RidgeClassifierCV(np.logspace(-1, 5, 10), class_weight="balanced")
+        return Odds(make_pipeline(StandardScaler(), model))
+
+    def named(*indicators: str) -> np.ndarray:
+        """Return the values of some indicators, of every channel."""
+        names = seen.matrix.names
+        return seen.matrix.values[:, [k for k, name in enumerate(names) if name.partition("__")[0] in indicators]]
+
+    bands, convolutions = (np.where(np.isfinite(x), x, 0.0) for x in (seen.bands, seen.convolutions))
+    lots = generator(seed, Purpose.PERMUTATION, CHANCE_OWNER).uniform(size=every.size)
+    found = [
+        Entry(CHANCE, AsItIs, lots, every),
+        Entry(RMS, logistic, named("rms"), every),
+        Entry(KURTOGRAM, AsItIs, seen.kurtogram, every),
+        Entry(SIX, logistic, named(*LEVELS, *PLAIN, *ADDED), every),
+        Entry(BAND, partial(BestColumn, [str(k) for k in range(bands.shape[1])]), bands, every),
+        Entry(BOOSTING, lambda: Odds(BoostingBaseline(seed, DEFAULT_TREES)), seen.matrix.values, every),
+        Entry(CONVOLUTIONS, ridge, convolutions, every),
+        Entry(NETWORK, partial(StoppedNetwork, seen.averages, stops, seed), np.arange(every.size), every),
+    ]
+    return found[:-1] if missing_packages("torch", "safetensors") else found
+
+
+def stacked(seen: SeenRecords, known: Sequence[Entry], every: Mapping[str, np.ndarray], seed: int) -> np.ndarray:
+    """Return the scores of the stack.
+
+    Parameters
+    ----------
+    seen : SeenRecords
+    known : sequence of Entry
+        Those to be weighed.
+    every : mapping of str to (records,) float64
+        Their scores after learning from all records to learn from.
+    seed : int
+        Deals gearboxes into folds.
+    """
+    from sklearn.linear_model import LogisticRegression
+    from sklearn.pipeline import make_pipeline
+    from sklearn.preprocessing import StandardScaler
+
+    fold = Design(FOLDS, CHANCE_OWNER).dealt(seen.gearbox, seed)[0]
+    own = (replace(entry, X=entry.X[: seen.learn]) for entry in known)
+    unseen = np.stack([pooled_scores(entry, seen.damaged, seen.gearbox, fold)[0] for entry in own], axis=1)
+    model = make_pipeline(StandardScaler(), LogisticRegression(class_weight="balanced", max_iter=1000))
+    model.fit(unseen, seen.damaged)
+    return np.asarray(model.decision_function(np.stack([every[entry.name] for entry in known], axis=1)))
+
+
+def damage_predictions(benchmark: Benchmark, seed: int, workers: int) -> Iterator[pa.Table]:
+    """Yield the rows of every baseline, alone and beside a healthy record; with two processes both at once."""
+    records = benchmark_records(benchmark, workers)
+    if workers == 1:
+        for referenced in TRACKS:
+            yield from _track(records, seed, referenced)
+        return
+    with process_pool(len(TRACKS)) as pool:
+        for tables in pool.map(partial(_track, records, seed), TRACKS):
+            yield from tables
+
+
+@single_thread()
+def _track(records: BenchRecords, seed: int, referenced: bool) -> list[pa.Table]:
+    seen = seen_records(records, referenced=referenced)
+    if not seen.tests().size or np.unique(seen.damaged).size < 2:
+        return []
+    known, scores = entries(seen, seed), {}
+    for entry in known:
+        scores[entry.name] = entry.make().fit(entry.X[: seen.learn], seen.damaged, seen.gearbox).score(entry.X)
+    scores[STACK] = stacked(seen, [entry for entry in known if entry.name in STACKED], scores, seed)
+    tests, beside = seen.tests(), BESIDE if referenced else ""
+    return [_rows(f"{name}{beside}", tests, score[seen.learn :], referenced) for name, score in scores.items()]
+
+
+def _rows(name: str, records: np.ndarray, damage: np.ndarray, referenced: bool) -> pa.Table:
+    count = records.size
+    return pa.table(
+        {
+            CLASSIFIER: [name] * count,
+            REFERENCE: [referenced] * count,
+            RECORD: pa.array(records, pa.int64()),
+            DAMAGE: np.asarray(damage, dtype=np.float64),
+        }
+    )
+
+
+def life_predictions(benchmark: Benchmark, seed: int, workers: int) -> Iterator[pa.Table]:
+    """Yield the rows of every baseline.
+
+    Raises
+    ------
+    DatasetError
+        If fewer than four gearboxes of the part to learn from failed.
+    """
+    parts = {name: benchmark.part(name) for name in benchmark.parts}
+    learn = inspections_of(benchmark.learn(), record_table(benchmark.learn(), workers=workers))
+    tests = [blind_inspections(part, record_table(part, workers=workers)) for part in parts.values()]
+    found = joined([learn, *tests])
+    paces = [pace(benchmark.learn().config, LIFE_CONDITIONS.get(name, {})) for name in parts]
+    hour = np.repeat([1.0, *paces], [one.specimen.size for one in (learn, *tests)])
+    found = replace(found, age_h=found.age_h * hour)
+    known = np.arange(found.specimen.size) < learn.specimen.size
+    asked = ~known & (found.split == "test")
+    for name, predict in predictors(found, seed).items():
+        hours = np.maximum(predict(known, asked) / hour[asked, None], 0.0)  # lives are never below 0
+        record = pa.array(found.record_id[asked], pa.int64())
+        yield pa.table({CLASSIFIER: [name] * len(record), RECORD: record, **dict(zip(COLUMNS, hours.T, strict=True))})
+
+
+def pace(config: Mapping[str, Any], changes: Mapping[str, Any]) -> float:
+    """Return how many hours of a configuration of lives wear as much as one with some changes; speeds are alike.
+
+    It is 1 where the configuration gives its load in N m: that of the test part is relative.
+    """
+    life = config["life"]
+    histories = [own or [[1.0, 1.0]] for own in ({**life, **changes.get("life", {})}["history"], life["history"])]
+    if any(len(block) > 2 for own in histories for block in own):
+        return 1.0
+    given = life["damage"]["torque_exponent"]
+    exponent = 0.5 * sum(given) if isinstance(given, list) else given  # gearboxes draw theirs: the middle
+    wear, usual = (sum(h * ratio**exponent for h, ratio in own) / sum(h for h, _ in own) for own in histories)
+    return float(wear / usual)
+
+
+def joined(parts: Sequence[Inspections]) -> Inspections:
+    """Return the inspections of several sets, no two of which share a number of a gearbox; without averages."""
+    arrays = {
+        one.name: np.concatenate([getattr(part, one.name) for part in parts])
+        for one in fields(Inspections)
+        if one.name not in ("indicators", "averages")
+    }
+    indicators = {name: np.concatenate([part.indicators[name] for part in parts]) for name in parts[0].indicators}
+    return replace(parts[0], **arrays, indicators=indicators, averages=None)
+
+
+@single_thread()
+def benchmark_baselines(folder: str | Path, seed: int = 0, workers: int = 1) -> Path:
+    """Learn the baselines on the part to learn from, write what they say of all test parts; return the file."""
+    require_packages("baselines", "sklearn")
+    benchmark = open_benchmark(folder)
+    predictions = life_predictions if question_of(benchmark.learn().config) is LIFE_QUESTION else damage_predictions
+    rows = list(predictions(benchmark, seed, workers))
+    table = pa.concat_tables(rows).replace_schema_metadata({IDENTITY_KEY: benchmark.digest.encode()})
+    path = benchmark.path / BASELINES / PREDICTIONS_FILE
+    write_file(path, lambda draft: parquet.write_table(table, draft, compression="zstd"))
+    return path
+
 
 BOARD, NUMBERS = "leaderboard.html", "leaderboard.json"
 MEAN = "mean"
@@ -64,7 +454,7 @@ class BoardEntry:
 
     name: str
     referenced: bool
-    ranking: Ranking
+    question: Question
     every: Mapping[str, np.ndarray]
     leak: Mapping[str, np.ndarray]
     gearboxes: Mapping[str, int]
@@ -76,7 +466,7 @@ class BoardEntry:
 
     def score(self, part: str) -> Interval:
         """Return the score of a part with its limits."""
-        limits = area_interval if self.ranking.measure.is_share else interval
+        limits = area_interval if self.question.measure.is_share else interval
         return limits(self.samples(part), self.count(part))
 
     def count(self, part: str) -> int:
@@ -115,10 +505,10 @@ def leaderboard(
     benchmark = open_benchmark(folder)
     parts = judged_parts(benchmark, labels_of(benchmark, Path(labels) if labels else None))
     judged = board_entries(benchmark, parts, Path(entries) if entries else None, seed)
-    ranking, spread = ranking_of(benchmark), {}
-    for side in ranking.tracks:
+    question, spread = question_of(benchmark.learn().config), {}
+    for side in question.tracks:
         names = parts_of(benchmark.parts, referenced=side)
-        spread[side] = chance_spread(ranking, [one for one in parts if one.name in names], seed)
+        spread[side] = chance_spread(question, [one for one in parts if one.name in names], seed)
     return write_board(benchmark, judged, spread, Path(out) if out else beside(benchmark.path, "_board"))
 
 
@@ -140,7 +530,7 @@ def board_entries(
             f"{folder or benchmark.path}: holds no predictions ({', '.join(SUFFIXES)}); `diagnostics."
             "benchmark_baselines` writes those of the baselines"
         )
-    ranking = ranking_of(benchmark)
+    question = question_of(benchmark.learn().config)
     weights = {part.name: bootstrap_weights(part.truth.specimen, seed, RESAMPLES) for part in parts}
     found: dict[str, BoardEntry] = {}
     for file in files:
@@ -149,31 +539,31 @@ def board_entries(
         for name in dict.fromkeys(name for by_name in columns.values() for name in by_name):
             if name in found:
                 raise UsageError(f"{file}: a second entry {name!r}; give each a name of its own (column {CLASSIFIER})")
-            referenced = True in ranking.tracks and _is_referenced(read, name)
+            referenced = True in question.tracks and _is_referenced(read, name)
             names = parts_of(benchmark.parts, referenced=referenced)
             answers = {part: by_name[name] for part, by_name in columns.items() if name in by_name and part in names}
-            found[name] = _entry(name, ranking, referenced, answers, parts, weights)
+            found[name] = _entry(name, question, referenced, answers, parts, weights)
     return list(found.values())
 
 
-def chance_spread(ranking: Ranking, parts: Sequence[JudgedPart], seed: int) -> float:
+def chance_spread(question: Question, parts: Sequence[JudgedPart], seed: int) -> float:
     """Return the standard deviation of the mean score of answers without knowledge; NaN of errors in hours.
 
     Parameters
     ----------
-    ranking : Ranking
+    question : Question
     parts : sequence of JudgedPart
     seed : int
         Of the answers.
     """
-    if not ranking.measure.is_share:
+    if not question.measure.is_share:
         return math.nan
     means = np.zeros(BLIND_ANSWERS)
     for place, part in enumerate(parts):
         rng = generator(seed, Purpose.PERMUTATION, CHANCE_OWNER, place)
-        asked = ranking.task.parts(part.truth)[ranking.records]
+        asked = question.task.parts(part.truth)[question.records]
         truth, once = part.truth.rows(asked), np.ones((1, int(asked.sum())))
-        own = [ranking.measure.samples(rng.uniform(size=once.size), truth, once)[0] for _ in means]
+        own = [question.measure.samples(rng.uniform(size=once.size), truth, once)[0] for _ in means]
         means += np.array(own) / len(parts)
     return float(np.std(means, ddof=1))
 
@@ -187,11 +577,6 @@ def best_by_chance(entries: int, spread: float) -> float:
     return 0.5 + spread * NormalDist().inv_cdf(LEVEL ** (1.0 / entries))
 
 
-def ranking_of(benchmark: Benchmark) -> Ranking:
-    """Return by what the entries of a benchmark are ranked."""
-    return question_of(benchmark.learn().config).ranking
-
-
 def _is_referenced(read: pa.Table, name: str) -> bool:
     if REFERENCE not in read.column_names:
         return False
@@ -202,14 +587,14 @@ def _is_referenced(read: pa.Table, name: str) -> bool:
 
 def _entry(
     name: str,
-    ranking: Ranking,
+    question: Question,
     referenced: bool,
     answers: Mapping[str, Any],
     parts: Sequence[JudgedPart],
     weights: Mapping[str, np.ndarray],
 ) -> BoardEntry:
-    task, measure = ranking.task, ranking.measure
-    found: dict[str | None, dict[str, np.ndarray]] = {ranking.records: {}, ranking.leak: {}}
+    task, measure = question.task, question.measure
+    found: dict[str | None, dict[str, np.ndarray]] = {question.records: {}, question.leak: {}}
     for part in parts:
         said = task.answers(answers[part.name], part.truth) if part.name in answers else None
         asked = task.parts(part.truth) if said is not None else {}
@@ -219,7 +604,7 @@ def _entry(
                 samples[part.name] = measure.samples(said[asked[what]], rows, drawn)
     counts = {part.name: measure.gearboxes(part.truth) for part in parts}
     chance = {part.name: measure.chance(part.truth) for part in parts}
-    return BoardEntry(name, referenced, ranking, found[ranking.records], found[ranking.leak], counts, chance)
+    return BoardEntry(name, referenced, question, found[question.records], found[question.leak], counts, chance)
 
 
 def write_board(
@@ -235,11 +620,11 @@ def write_board(
         As of `chance_spread`, by track.
     folder : Path
     """
-    ranking = ranking_of(benchmark)
-    tables = {side: _ordered(entries, parts_of(benchmark.parts, referenced=side), side) for side in ranking.tracks}
+    question = question_of(benchmark.learn().config)
+    tables = {side: _ordered(entries, parts_of(benchmark.parts, referenced=side), side) for side in question.tracks}
     numbers = [row for ordered in tables.values() for row in _numbers(ordered, benchmark)]
     limits = {
-        ranking.tracks[side]: {"entries": len(ordered), "best_by_chance": best_by_chance(len(ordered), spread[side])}
+        question.tracks[side]: {"entries": len(ordered), "best_by_chance": best_by_chance(len(ordered), spread[side])}
         for side, ordered in tables.items()
         if ordered and spread[side] > 0.0
     }
@@ -255,7 +640,7 @@ def write_board(
     for referenced, ordered in tables.items():
         if ordered:
             parts += [
-                Heading(ranking.tracks[referenced]),
+                Heading(question.tracks[referenced]),
                 _figure(ordered),
                 *_table(ordered, parts_of(benchmark.parts, referenced=referenced)),
             ]
@@ -272,23 +657,26 @@ def _ordered(entries: Sequence[BoardEntry], parts: Sequence[str], referenced: bo
 
 def _goodness(entry: BoardEntry) -> float:
     """Return the mean score, of a score that falls with its sign turned: more is better."""
-    return float(entry.samples(MEAN)[0]) * (-1.0 if entry.ranking.measure.falls else 1.0)
+    return float(entry.samples(MEAN)[0]) * (-1.0 if entry.question.measure.falls else 1.0)
 
 
 def _sentences(
     benchmark: Benchmark, tables: Mapping[bool, list[BoardEntry]], spread: Mapping[bool, float]
 ) -> list[str]:
-    entries, ranking = [entry for ordered in tables.values() for entry in ordered], ranking_of(benchmark)
+    entries, question = (
+        [entry for ordered in tables.values() for entry in ordered],
+        question_of(benchmark.learn().config),
+    )
     return [
-        *(_lead(ranking.tracks[referenced], ordered) for referenced, ordered in tables.items() if ordered),
+        *(_lead(question.tracks[referenced], ordered) for referenced, ordered in tables.items() if ordered),
         *(
-            _count_sentence(ranking.tracks[side], len(own), spread[side])
+            _count_sentence(question.tracks[side], len(own), spread[side])
             for side, own in tables.items()
             if own and spread[side] > 0.0
         ),
-        *([_leak_sentence(entries)] if ranking.leak else []),
-        f"Scores are {ranking.said}, with 95 % limits over gearboxes. Digest {benchmark.digest}, simulation version "
-        f"{benchmark.simulation_version}: only scores with the same two are comparable.",
+        *([_leak_sentence(entries)] if question.leak else []),
+        f"Scores are {question.scores_are}, with 95 % limits over gearboxes. Digest {benchmark.digest}, simulation "
+        f"version {benchmark.simulation_version}: only scores with the same two are comparable.",
     ]
 
 
@@ -314,9 +702,9 @@ def _leak_sentence(entries: Sequence[BoardEntry]) -> str:
 def _lead(track: str, ordered: Sequence[BoardEntry]) -> str:
     """Return who leads, and whether the gearboxes tell the second from it."""
     first, score = ordered[0], ordered[0].score(MEAN)
-    measure = first.ranking.measure
+    measure = first.question.measure
     limits = f"{score.value:.2f} ({score.low:.2f} to {score.high:.2f})"
-    said = f"{track}: {first.name} leads with a mean {first.ranking.name} of {limits}"
+    said = f"{track}: {first.name} leads with a mean {first.question.score_name} of {limits}"
     if len(ordered) < 2 or len(ordered[1].every) < len(first.every):
         return f"{said}."
     behind = paired(first, ordered[1], MEAN)
@@ -336,11 +724,11 @@ def _figure(ordered: Sequence[BoardEntry]) -> FigureGrid:
     if missing_packages("matplotlib"):
         return FigureGrid(())
     whole = [entry for entry in ordered if len(entry.every) == len(ordered[0].every)]
-    task, measure = ordered[0].ranking.task.name, ordered[0].ranking.measure
+    task, measure = ordered[0].question.task.name, ordered[0].question.measure
     chance = float(np.mean(list(ordered[0].chance.values())))
     mean = "mean of the parts"
     rows = [ScoreRow(task, measure.name, mean, one.name, one.score(MEAN), chance, None, measure.falls) for one in whole]
-    caption = f"Mean {ordered[0].ranking.name} with 95 % limits; dotted: chance."
+    caption = f"Mean {ordered[0].question.score_name} with 95 % limits; dotted: chance."
     return FigureGrid([FigureBlock(png_bytes(score_figure(rows)), caption)])
 
 
@@ -356,14 +744,14 @@ def _table(ordered: Sequence[BoardEntry], parts: Sequence[str]) -> list[Block]:
         apart.append([Cell(entry.name), *pairs])
     behind = f"Entry minus the first, {leader.name}, paired on the same resampled gearboxes."
     return [
-        TableBlock(["Entry", *columns], rows, caption=_caption(leader.ranking), sortable=True),
+        TableBlock(["Entry", *columns], rows, caption=_caption(leader.question), sortable=True),
         TableBlock(["Entry", *columns], apart[1:], caption=behind, sortable=True),
         Paragraph("A difference whose limits exclude 0 is one that these gearboxes can tell."),
     ]
 
 
-def _caption(ranking: Ranking) -> str:
-    return f"{capitalised(ranking.measure.name)} of {ranking.records}."
+def _caption(question: Question) -> str:
+    return f"{capitalised(question.measure.name)} of {question.records}."
 
 
 def _behind(leader: BoardEntry, entry: BoardEntry, part: str) -> Cell:
@@ -383,7 +771,7 @@ def _numbers(ordered: Sequence[BoardEntry], benchmark: Benchmark) -> list[dict[s
         {
             "name": entry.name,
             "beside_a_healthy_record": entry.referenced,
-            entry.ranking.key: {part: entry.score(part) for part in _parts(entry, benchmark)},
+            entry.question.score_key: {part: entry.score(part) for part in _parts(entry, benchmark)},
             "sham": {part: area_interval(one, entry.gearboxes[part]) for part, one in entry.leak.items()},
             "minus_first": {
                 part: paired(ordered[0], entry, part)

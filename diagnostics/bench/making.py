@@ -1,7 +1,7 @@
 """Making a benchmark: the part to learn from, test parts simulated in secret and written blind, labels sealed.
 
 What nobody may know stands in a folder beside the benchmark: the secret, the simulated sets, the sealed labels. Seeds,
-numbers, order and salt follow from the secret (`derived_secret`), so the same call goes on where it was stopped.
+numbers, order and salt follow from the secret, so the same call goes on where it was stopped.
 
 Rows of a test part stand without what tells a state, decided by the roles of columns. Signals, pulses and conditions
 stay. Numbers of records and gearboxes are drawn anew. What follows from the damage, what was drawn for the record and
@@ -13,9 +13,11 @@ from __future__ import annotations
 
 import json
 import math
+import secrets
 import shutil
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -24,10 +26,16 @@ import pyarrow as pa
 
 import siggen
 from diagnostics.base.beside import beside
-from diagnostics.bench.conditions import CONDITIONS, TIERS, changed, is_alone
-from diagnostics.bench.derived_secret import derived, read_secret, seed_of, shuffled
-from diagnostics.bench.question import PublishedRecords, Question, Renumbered, Words
-from diagnostics.bench.questions import question_of
+from diagnostics.bench.question import (
+    CONDITIONS,
+    LIFE_QUESTION,
+    PublishedRecords,
+    Question,
+    derived,
+    is_alone,
+    question_of,
+    shuffled,
+)
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.scoring.benchmark import (
     COMMITMENT,
@@ -50,6 +58,123 @@ from siggen.file_writing import write_file
 from siggen.keys.column import Role
 from siggen.plain_json import json_text
 
+
+@dataclass(frozen=True, slots=True)
+class Tier:
+    """How many gearboxes to learn from, and in each test part."""
+
+    learn: int
+    test: int
+
+
+TIERS: Mapping[str, Tier] = {"tiny": Tier(12, 6), "small": Tier(60, 24), "full": Tier(300, 180)}
+
+
+FEWEST_BYTES = 32
+
+
+def read_secret(file: Path) -> bytes:
+    """Return the secret of a file; one that is not there is made, readable by its owner alone.
+
+    Raises
+    ------
+    UsageError
+        If it is shorter than 32 bytes, which could be guessed.
+    """
+    if not file.exists():
+        file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        write_file(file, _draw)
+    found = file.read_bytes().strip()
+    if len(found) < FEWEST_BYTES:
+        raise UsageError(
+            f"{file}: received a secret of {len(found)} bytes; allowed: {FEWEST_BYTES} or more, drawn at random; "
+            "remove the file and one is drawn"
+        )
+    return found
+
+
+def _draw(draft: Path) -> None:
+    draft.touch(mode=0o600)
+    draft.write_text(secrets.token_hex(FEWEST_BYTES) + "\n", encoding="ascii")
+
+
+def seed_of(secret: bytes, part: str) -> int:
+    """Return the seed of a part, 128 bits: more than can be tried until a draw fits what is published."""
+    return int.from_bytes(derived(secret, "seed", part)[:16], "big")
+
+
+def changed(config: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a configuration with what a condition changes; sections stay but for the keys named, states are others."""
+    named = {name: value if name == "states" else _merged(config.get(name), value) for name, value in changes.items()}
+    return {**config, **named}
+
+
+def _merged(section: Any, value: Any) -> Any:
+    """Return a section with the keys of a mapping, or the value itself; a section of another kind is a value."""
+    if not isinstance(value, Mapping) or not isinstance(section, Mapping) or "kind" in value:
+        return value
+    return {**section, **{name: _merged(section.get(name), own) for name, own in value.items()}}
+
+
+@dataclass(frozen=True, slots=True)
+class Renumbered:
+    """New numbers of the published records of a part.
+
+    Attributes
+    ----------
+    record, gearbox : mapping of int to int
+        Number in the simulated set -> number in the part.
+    shown : PublishedRecords
+    """
+
+    record: Mapping[int, int]
+    gearbox: Mapping[int, int]
+    shown: PublishedRecords
+
+    def split(self, record: int) -> str:
+        """Return the split of a record, by its number in the simulated set."""
+        return "test" if record in self.shown.asked else "train"
+
+
+KEYS = ("record_id", "specimen_id", "split", "inspection")
+SEEN = {"inspections": ("age_h", "age_rev"), "debris": ("debris_mg",), "pictures": ("gear", "tooth", "png")}
+"""Tables of `life/` and their columns that a model may see; all else is truth."""
+SEALED_TABLES = ("inspections", "outlook")
+
+
+def life_tables(dataset: Dataset, numbers: Renumbered) -> tuple[dict[str, pa.Table], dict[str, pa.Table]]:
+    """Return the tables of `life/` to publish, and those to seal; of inspections that are shown alone."""
+    first = _first_records(dataset, numbers)
+    whole = {name: _shown_rows(dataset.life(name), first, numbers) for name in dict.fromkeys((*SEEN, *SEALED_TABLES))}
+    seen = {name: whole[name].select([*KEYS, *columns]) for name, columns in SEEN.items()}
+    return seen, {name: whole[name] for name in SEALED_TABLES}
+
+
+def _first_records(dataset: Dataset, numbers: Renumbered) -> dict[tuple[int, int], int]:
+    """Return the first published record of every gearbox and inspection, by its number in the simulated set."""
+    found: dict[tuple[int, int], int] = {}
+    for row in dataset.labels(columns=["record_id", "specimen_id", "state_id"]).to_pylist():
+        if row["record_id"] in numbers.record:
+            key = row["specimen_id"], row["state_id"]
+            found[key] = min(found.get(key, row["record_id"]), row["record_id"])
+    return found
+
+
+def _shown_rows(table: pa.Table, first: Mapping[tuple[int, int], int], numbers: Renumbered) -> pa.Table:
+    rows = sorted(_renumbered_rows(table, first, numbers), key=lambda row: int(row["record_id"]))
+    return pa.Table.from_pylist(rows, schema=table.schema)
+
+
+def _renumbered_rows(
+    table: pa.Table, first: Mapping[tuple[int, int], int], numbers: Renumbered
+) -> Iterator[dict[str, Any]]:
+    for row in table.to_pylist():
+        record = first.get((row["specimen_id"], row["inspection"]))
+        if record is not None:
+            own = {"record_id": numbers.record[record], "specimen_id": numbers.gearbox[row["specimen_id"]]}
+            yield {**row, **own, "split": numbers.split(record)}
+
+
 UNKNOWN = "unknown"
 TEXTS = ("state", "fault", "severity")
 NUMBERS = ("damaged_area_mm2", "damaged_area_share", "damage_profile_length_mm", "mesh_stiffness_loss")
@@ -68,7 +193,7 @@ def renumbered(dataset: Dataset, shown: PublishedRecords, secret: bytes, name: s
     ----------
     dataset : siggen Dataset
         The simulated set.
-    shown : Shown
+    shown : PublishedRecords
         Which of its records are published.
     secret : bytes
     name : str
@@ -162,14 +287,14 @@ def _columns(rows: list[dict[str, Any]]) -> dict[str, list[Any]]:
 CLOSING, LICENCE = "## Licence, authors, citation\n", "license: "
 
 
-def benchmark_card(facts: Mapping[str, Any], learn: Any, card: str, words: Words) -> str:
+def benchmark_card(facts: Mapping[str, Any], learn: Any, card: str, question: Question) -> str:
     """Return the card of the whole benchmark; licence, authors and citation are those of the card to learn from."""
     _, closing, said = card.partition(CLOSING)
     licence = next((line for line in card.splitlines() if line.startswith(LICENCE)), "")
     rows = "\n".join(f"| `{TESTS}/{name}` | {facts['records'][name]} |" for name in facts["parts"])
-    return f"""{_front_matter(facts, licence, words.train)}# {facts["title"]}, {facts["tier"]}
+    return f"""{_front_matter(facts, licence, question.train)}# {facts["title"]}, {facts["tier"]}
 
-{words.subject} in simulated vibration records of {learn.duration_s:g} s at {learn.fs_hz:g} Hz. **The data are
+{question.subject} in simulated vibration records of {learn.duration_s:g} s at {learn.fs_hz:g} Hz. **The data are
 synthetic**: they were computed by siggen, simulation version {facts["simulation_version"]}, not measured. Labels of the
 test parts are sealed until their maker reveals them.
 
@@ -180,7 +305,7 @@ test parts are sealed until their maker reveals them.
 
 ## Rules
 
-{words.rules}
+{question.rules}
 
 ## Scores
 
@@ -374,8 +499,8 @@ def write_benchmark(
     parts = {}
     for place, (name, config) in enumerate(tests.items()):
         dataset = _simulated(config, hidden / SIMULATED / name, workers)
-        numbers = renumbered(dataset, question.shown(dataset, secret, name), secret, name, place)
-        seen, kept = question.tables(dataset, numbers)
+        numbers = renumbered(dataset, question.shown(dataset.labels().to_pylist(), secret, name), secret, name, place)
+        seen, kept = life_tables(dataset, numbers) if question is LIFE_QUESTION else ({}, {})
         parts[name] = sealed_part(dataset, numbers, kept)
         _write_blind(dataset, numbers, (learn, config), out / TESTS / name, question, seen)
     told = benchmark_facts(out, question.title, tier, tuple(tests))
@@ -387,7 +512,7 @@ def write_benchmark(
     }
     write_file(hidden / SEALED, json.dumps(sealed, sort_keys=True, allow_nan=False) + "\n")
     own = (out / LEARN / CARD).read_text(encoding="utf-8")
-    write_file(out / CARD, benchmark_card(told, learn, own, question.words))
+    write_file(out / CARD, benchmark_card(told, learn, own, question))
     write_file(out / FACTS, json_text(told))
     return open_benchmark(out)
 
@@ -448,5 +573,5 @@ def _write_blind(
     shutil.rmtree(folder, ignore_errors=True)  # what a call that was stopped had half written
     learn, own = configs
     rows, facts = blind_rows(dataset, numbers), {"benchmark": question.title, "part": folder.name}
-    card = question.words.part(question.title, folder.name, rows)
+    card = question.part_card(question.title, folder.name, rows)
     siggen.write_recorded_set(learn, folder, rows, condition_fields(dataset), facts, card, measured=own, life=life)

@@ -142,7 +142,7 @@ DIAGNOSTICS = {
         "Scores": "scoring.score", "ScoreRow": "scoring.score_rows", "diagnostics.open_benchmark": "scoring.benchmark",
         "diagnostics.score_benchmark": "scoring.benchmark_scores",
         "diagnostics.make_benchmark": "bench.making", "diagnostics.commit_benchmark": "bench.making",
-        "diagnostics.reveal_benchmark": "bench.making", "diagnostics.benchmark_baselines": "bench.questions",
+        "diagnostics.reveal_benchmark": "bench.making", "diagnostics.benchmark_baselines": "bench.leaderboard",
         "diagnostics.leaderboard": "bench.leaderboard",
     },
     "## diagnostics.loader\n\nWindows of a set for PyTorch. [Load a set](../start/load_a_set.md) has an example.": {

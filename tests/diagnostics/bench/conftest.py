@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 import pytest
 
 import siggen
-from diagnostics.bench.conditions import Tier
-from diagnostics.bench.making import SIMULATED, commit_benchmark, write_benchmark
+from diagnostics.bench.making import SIMULATED, Tier, commit_benchmark, write_benchmark
 from diagnostics.scoring.benchmark import SEALED, Benchmark, open_benchmark
 from tests.shared import shared_folder
 

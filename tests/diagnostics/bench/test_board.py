@@ -12,18 +12,20 @@ import pyarrow.parquet as pq
 import pytest
 
 import diagnostics
-from diagnostics.bench.baselines import (
+from diagnostics.bench.leaderboard import (
     BESIDE,
+    BOARD,
     CHANCE,
     KURTOGRAM,
     NETWORK,
+    NUMBERS,
     STACK,
     benchmark_records,
+    best_by_chance,
     entries,
     seen_records,
 )
-from diagnostics.bench.conditions import parts_of
-from diagnostics.bench.leaderboard import BOARD, NUMBERS, best_by_chance
+from diagnostics.bench.question import parts_of
 from diagnostics.scoring.benchmark import open_benchmark
 from tests.diagnostics.bench.conftest import Made
 
@@ -33,8 +35,8 @@ def learned(made: Made, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the benchmark with its baselines; for time without a network, with fewer folds and convolutions."""
     bench = Path(shutil.copytree(made.benchmark.path, tmp_path_factory.mktemp("learned") / "bench"))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("diagnostics.bench.baselines.missing_packages", lambda *_: ("torch",))
-        patch.setattr("diagnostics.bench.baselines.FOLDS", 2)
+        patch.setattr("diagnostics.bench.leaderboard.missing_packages", lambda *_: ("torch",))
+        patch.setattr("diagnostics.bench.leaderboard.FOLDS", 2)
         patch.setattr("diagnostics.audit.signal_attackers.DILATIONS", (1, 8))
         diagnostics.benchmark_baselines(bench)
     return bench

@@ -15,10 +15,9 @@ from scipy.stats import kstest, rankdata
 
 import diagnostics
 import siggen
-from diagnostics.bench.conditions import LIFE_CONDITIONS, TIERS, Tier
-from diagnostics.bench.leaderboard import BOARD, NUMBERS
-from diagnostics.bench.life_question import pace
-from diagnostics.bench.making import SEALED, SECRET_FILE, SIMULATED
+from diagnostics.bench.leaderboard import BOARD, NUMBERS, pace
+from diagnostics.bench.making import SEALED, SECRET_FILE, SIMULATED, TIERS, Tier
+from diagnostics.bench.question import LIFE_CONDITIONS
 from diagnostics.scoring.benchmark import open_benchmark
 from diagnostics.training.lives import AGE, DEBRIS
 from siggen.dataset.reading import Dataset
