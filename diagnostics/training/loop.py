@@ -9,6 +9,7 @@ from math import inf
 
 import torch
 from torch import nn
+from torch.optim.adamw import adamw
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,15 +59,15 @@ def fit_network(
     advance : callable, optional
         Called after every round.
     """
-    optimiser = torch.optim.AdamW(network.parameters(), lr=loop.rate, weight_decay=loop.decay)
+    step = _adamw(list(network.parameters()), loop)
     kept, best, lowest, losses = _weights(network), 0, inf, list[float]()
     for done in range(loop.most + 1):
         if done:
             network.train()
             for loss in batches(done):
-                optimiser.zero_grad()
+                network.zero_grad()
                 loss.backward()
-                optimiser.step()
+                step()
             if advance:
                 advance()
         if done % loop.every or not (done or loop.from_start):
@@ -82,6 +83,20 @@ def fit_network(
     network.load_state_dict(kept)
     network.eval()
     return best, done, tuple(losses)
+
+
+def _adamw(weights: list[nn.Parameter], loop: LoopSettings) -> Callable[[], None]:
+    """Return a step of AdamW. The class `torch.optim.AdamW` takes the same, but loads a compiler first: 1 s of CPU."""
+    means, squares = ([torch.zeros_like(weight) for weight in weights] for _ in range(2))
+    counts = [torch.tensor(0.0) for _ in weights]
+    law = {"lr": loop.rate, "weight_decay": loop.decay, "beta1": 0.9, "beta2": 0.999, "eps": 1e-8}
+
+    def step() -> None:
+        slopes = [weight.grad for weight in weights]
+        with torch.no_grad():
+            adamw(weights, slopes, means, squares, [], counts, amsgrad=False, maximize=False, **law)
+
+    return step
 
 
 def _weights(network: nn.Module) -> dict[str, torch.Tensor]:
