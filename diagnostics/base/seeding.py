@@ -20,6 +20,7 @@ class Purpose(IntEnum):
     AVERAGES = 10
     PATHS = 11
     LIFE_NETWORK = 12
+    REPLAY = 13
 
 
 def generator(seed: int, purpose: Purpose, owner: int = 0, *part: int) -> np.random.Generator:

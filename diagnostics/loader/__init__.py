@@ -7,16 +7,20 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from diagnostics.loader.epoch_order import Shuffling
+    from diagnostics.loader.streamed_windows import StreamedWindows
     from diagnostics.loader.window_dataset import ShardSampler, WindowDataset
     from diagnostics.loader.window_index import StreamSettings
     from diagnostics.loader.window_stream import WindowLoader, WindowStream
 
-__all__ = ["ShardSampler", "Shuffling", "StreamSettings", "WindowDataset", "WindowLoader", "WindowStream"]
+__all__ = [
+    "ShardSampler", "Shuffling", "StreamSettings", "StreamedWindows", "WindowDataset", "WindowLoader", "WindowStream",
+]  # fmt: skip
 
 _HOMES = {
     "ShardSampler": "window_dataset",
     "Shuffling": "epoch_order",
     "StreamSettings": "window_index",
+    "StreamedWindows": "streamed_windows",
     "WindowDataset": "window_dataset",
     "WindowLoader": "window_stream",
     "WindowStream": "window_stream",

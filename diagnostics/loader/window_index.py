@@ -235,7 +235,7 @@ def window_index(dataset: Dataset, split: str, settings: StreamSettings, further
     for number, group in enumerate(pulses):
         lengths.append(np.array([_decoded_samples(times, settings, recorded) for times in group], dtype=np.int64))
         for row, times in enumerate(group):
-            starts = _starts(times, settings, dataset.fs_hz)
+            starts = window_starts(times, settings, dataset.fs_hz)
             for turn, start in starts.items():
                 if start + samples <= lengths[-1][row]:
                     rows.append((number, row, start, record))
@@ -267,7 +267,7 @@ def _pulses(rows: pa.RecordBatch) -> Iterator[np.ndarray]:
     yield from (np.asarray(column[row].values, dtype=np.float64) for row in range(len(column)))
 
 
-def _starts(pulses: np.ndarray, settings: StreamSettings, fs_hz: float) -> dict[int, int]:
+def window_starts(pulses: np.ndarray, settings: StreamSettings, fs_hz: float) -> dict[int, int]:
     """Return the first sample of every window by the pulse that it starts at."""
     first = range(0, pulses.size - settings.revolutions, settings.hop_revolutions)
     if settings.samples_per_revolution is not None:

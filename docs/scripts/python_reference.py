@@ -150,6 +150,7 @@ DIAGNOSTICS = {
         "diagnostics.loader.WindowLoader": "loader.window_stream",
         "diagnostics.loader.WindowDataset": "loader.window_dataset",
         "diagnostics.loader.ShardSampler": "loader.window_dataset",
+        "diagnostics.loader.StreamedWindows": "loader.streamed_windows",
         "diagnostics.loader.StreamSettings": "loader.window_index",
         "diagnostics.loader.Shuffling": "loader.epoch_order",
     },

@@ -7,15 +7,14 @@ which of them first.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
+from functools import cached_property
 from itertools import count
 from typing import Any
 
-import numpy as np
-
-from siggen.columns.record import RecordFailure
+from siggen.columns.record import ChannelColumn, RecordFailure
 from siggen.dataset.reading import as_record
 from siggen.dataset.simulated_rows import SimulatedRows
 from siggen.errors import UsageError
@@ -28,7 +27,7 @@ from siggen.workers.choice import workers_of
 from siggen.workers.tasks import OPEN_PER_WORKER, results
 
 MIXED = 16
-"""Gearboxes whose records are mixed: of `quickstart` 80 records, 30 MB."""
+"""Gearboxes whose records are mixed: of `quickstart` 80 records, 25 MB."""
 
 
 class RecordStream:
@@ -53,37 +52,47 @@ class RecordStream:
         self._workers = workers_of(executor, workers)
         self._passed = 0
 
+    @cached_property
+    def channels(self) -> tuple[ChannelColumn, ...]:
+        """What is measured, and the names under which records hold it."""
+        from siggen.sets.drawn import set_columns
+
+        return set_columns(self.design).channels
+
     def __iter__(self) -> Iterator[dict[str, Any]]:
         """Yield records from the present place on."""
+        for records in self.blocks():
+            for record in records[self._passed % len(records) :]:
+                self._passed += 1
+                if record is not None:
+                    yield record
+
+    def blocks(self) -> Iterator[list[dict[str, Any] | None]]:
+        """Yield the records of so many mixed gearboxes in their order, from the block of the present place on.
+
+        What failed is None. A block has passed when the next one is asked for.
+        """
         physics = contents.physics()
         self._compile(physics)
-        each = self.design.records_per_specimen
-        block, passed = divmod(self._passed, self.mixed * each)
-        order = self._order(block)
+        size = self.mixed * self.design.records_per_specimen
+        block = self._passed // size
         made: dict[int, SimulatedRows] = {}
-        wanted = first = block * self.mixed
+        first = block * self.mixed
 
         def room() -> bool:
             # what is mixed, and what workers have under way while it is used up
             return len(made) < 2 * self.mixed + OPEN_PER_WORKER * self._workers.count
 
         tasks = (self._record_ids(number) for number in count(first))
-        simulation = physics.simulation(self.design)
-        with closing(results(self._workers, simulation, tasks, room=room)) as answers:
+        with closing(results(self._workers, physics.simulation(self.design), tasks, room=room)) as answers:
             while True:
-                while any(number not in made for number in range(wanted, wanted + self.mixed)):
+                wanted = range(block * self.mixed, (block + 1) * self.mixed)
+                while not all(number in made for number in wanted):
                     number, rows = next(answers)
                     made[first + number] = rows
-                for place in order[passed:]:
-                    gearbox, record = divmod(int(place), each)
-                    self._passed += 1
-                    found = self._found(made[wanted + gearbox], self._record_ids(wanted + gearbox)[record])
-                    if found is not None:
-                        yield found
-                for number in range(wanted, wanted + self.mixed):
-                    del made[number]
-                wanted, block, passed = wanted + self.mixed, block + 1, 0
-                order = self._order(block)
+                yield self._mixed(block, [made.pop(number) for number in wanted])
+                block += 1
+                self._passed = max(self._passed, block * size)
 
     def state_dict(self) -> dict[str, Any]:
         """Return the place behind the last record as plain values."""
@@ -125,19 +134,17 @@ class RecordStream:
             )
         return record_ids_of(self.design, gearbox)
 
-    def _order(self, block: int) -> np.ndarray:
-        """Return in which order the records of a block of gearboxes come."""
+    def _mixed(self, block: int, made: Sequence[SimulatedRows]) -> list[dict[str, Any] | None]:
+        """Return the records of a block of gearboxes in the order that is drawn for it; None for what failed."""
+        records: list[dict[str, Any] | None] = []
+        for place, rows in enumerate(made):
+            self.failures += rows.failures
+            row_of = {number: row for row, number in enumerate(rows.rows["record_id"].to_pylist())}
+            for record_id in self._record_ids(block * self.mixed + place):
+                row = row_of.get(record_id)
+                records.append(None if row is None else as_record(rows.rows.slice(row, 1)))
         drawn = generator(self.seed, Stream.STREAM_ORDER, block * self.ranks + self.rank)
-        return drawn.permutation(self.mixed * self.design.records_per_specimen)
-
-    def _found(self, rows: SimulatedRows, record_id: int) -> dict[str, Any] | None:
-        """Return a record; of one that failed nothing, and what it was is kept."""
-        for failure in rows.failures:
-            if failure.record_id == record_id:
-                self.failures.append(failure)
-                return None
-        places: list[int] = rows.rows["record_id"].to_pylist()
-        return as_record(rows.rows.slice(places.index(record_id), 1))
+        return [records[place] for place in drawn.permutation(len(records))]
 
     def _compile(self, physics: contents.Physics) -> None:
         """Compile once for all workers, which would compile the same side by side."""
