@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from siggen.library.running import run, runs
     from siggen.library.sensors import Channel, Reading, Sensor
     from siggen.publication.publish import publish
+    from siggen.sets.chosen_records import simulate_records
     from siggen.sets.generation import generate
     from siggen.sets.recorded_set import write_recorded_set
     from siggen.sets.streaming import stream
@@ -34,7 +35,7 @@ __all__ = [
     "LineOrders", "Pit", "Point", "Reading", "Record", "Sensor", "Spall", "Spectrum", "State", "Wear", "draw",
     "flank_picture", "generate", "load_config", "machine", "mesh_stiffness",
     "open", "pits_in_layers", "plan", "planetary", "publish",
-    "random_pits", "run", "runs", "single_stage", "stream", "write_csv", "write_recorded_set",
+    "random_pits", "run", "runs", "simulate_records", "single_stage", "stream", "write_csv", "write_recorded_set",
 ]  # fmt: skip
 
 _NAMES = {
@@ -52,6 +53,7 @@ _NAMES = {
     "siggen.library.sensors": "Channel Reading Sensor",
     "siggen.gearbox.plan": "plan",
     "siggen.publication.publish": "publish",
+    "siggen.sets.chosen_records": "simulate_records",
     "siggen.sets.generation": "generate",
     "siggen.sets.recorded_set": "write_recorded_set",
     "siggen.sets.streaming": "stream",

@@ -16,7 +16,7 @@ import math
 import secrets
 import shutil
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -27,6 +27,7 @@ import pyarrow as pa
 import siggen
 from diagnostics.base.beside import beside
 from diagnostics.bench.question import (
+    ALONE,
     CONDITIONS,
     LIFE_QUESTION,
     PublishedRecords,
@@ -186,13 +187,32 @@ DIGITS = 4
 """To which conditions of test parts are rounded: a whole double would tell a guessed seed from all wrong ones."""
 
 
-def renumbered(dataset: Dataset, shown: PublishedRecords, secret: bytes, name: str, place: int) -> Renumbered:
+@dataclass(frozen=True, slots=True)
+class SimulatedPart:
+    """What was simulated for a test part: a whole set, or the records alone that are published.
+
+    Attributes
+    ----------
+    labels, damage : pyarrow.Table
+        As of `siggen.open`.
+    batches : iterable of pyarrow.RecordBatch
+        Rows with signals.
+    signals : list of str
+        Columns of the channels.
+    """
+
+    labels: pa.Table
+    damage: pa.Table
+    batches: Iterable[pa.RecordBatch]
+    signals: list[str]
+
+
+def renumbered(part: SimulatedPart, shown: PublishedRecords, secret: bytes, name: str, place: int) -> Renumbered:
     """Return new numbers in an order that only the secret tells, those that are asked about last.
 
     Parameters
     ----------
-    dataset : siggen Dataset
-        The simulated set.
+    part : SimulatedPart
     shown : PublishedRecords
         Which of its records are published.
     secret : bytes
@@ -202,7 +222,7 @@ def renumbered(dataset: Dataset, shown: PublishedRecords, secret: bytes, name: s
         Of the part, from 0.
     """
     first = (place + 1) * PER_PART
-    specimens = set(dataset.labels(columns=["specimen_id"]).column("specimen_id").to_pylist())
+    specimens = set(part.labels.column("specimen_id").to_pylist())
     ordered = shuffled(secret, f"records/{name}", shown.state_id)
     ordered.sort(key=lambda one: one in shown.asked)  # stable: both kinds stay in their order
     gearboxes = shuffled(secret, f"gearboxes/{name}", specimens)
@@ -213,23 +233,26 @@ def renumbered(dataset: Dataset, shown: PublishedRecords, secret: bytes, name: s
     )
 
 
-def condition_fields(dataset: Dataset) -> pa.Schema:
+def condition_fields(labels: pa.Table) -> pa.Schema:
     """Return the columns that are conditions, beside those of every set."""
-    schema = dataset.labels().schema
-    kept = [field for field in schema if (field.metadata or {}).get(b"role") == Role.CONDITION.value.encode()]
+    kept = _of_role(labels.schema, Role.CONDITION)
     return pa.schema([field for field in kept if field.name not in GIVEN and not field.name.startswith(TEETH)])
 
 
-def blind_rows(dataset: Dataset, numbers: Renumbered) -> list[dict[str, Any]]:
+def _of_role(schema: pa.Schema, role: Role) -> list[pa.Field]:
+    return [field for field in schema if (field.metadata or {}).get(b"role") == role.value.encode()]
+
+
+def blind_rows(part: SimulatedPart, numbers: Renumbered) -> list[dict[str, Any]]:
     """Return the rows of a part by their new numbers, with signals."""
     found = []
-    kept = [*GIVEN, *condition_fields(dataset).names]
-    kept += [name for name in dataset.labels().column_names if name.startswith(TEETH)]
-    for batch in dataset.records(batch_rows=16):
+    kept = [*GIVEN, *condition_fields(part.labels).names]
+    kept += [name for name in part.labels.column_names if name.startswith(TEETH)]
+    for batch in part.batches:
         for place, record in enumerate(batch.column("record_id").to_pylist()):
             if record in numbers.record:
                 row = as_record(batch.slice(place, 1))
-                found.append(_blind(row, numbers, kept, [channel.column for channel in dataset.channels]))
+                found.append(_blind(row, numbers, kept, part.signals))
     return sorted(found, key=lambda row: int(row["record_id"]))
 
 
@@ -257,15 +280,12 @@ def _rounded(value: Any) -> Any:
     return float(f"{value:.{DIGITS}g}") if isinstance(value, float) else value
 
 
-def sealed_part(dataset: Dataset, numbers: Renumbered, life: Mapping[str, pa.Table]) -> dict[str, Any]:
+def sealed_part(part: SimulatedPart, numbers: Renumbered, life: Mapping[str, pa.Table]) -> dict[str, Any]:
     """Return labels, damaged teeth and tables of `life/` of a part, columns by name, ascending by new numbers."""
-    table = dataset.labels()
-    targets = [
-        field.name for field in table.schema if (field.metadata or {}).get(b"role") == Role.TARGET.value.encode()
-    ]
-    labels = table.select(["record_id", "state_id", *targets]).to_pylist()
+    targets = [field.name for field in _of_role(part.labels.schema, Role.TARGET)]
+    labels = part.labels.select(["record_id", "state_id", *targets]).to_pylist()
     labels = _published([{**row, "simulated_record_id": row["record_id"]} for row in labels], numbers)
-    damage = _published(dataset.damage().select(["record_id", "gear", "tooth"]).to_pylist(), numbers)
+    damage = _published(part.damage.select(["record_id", "gear", "tooth"]).to_pylist(), numbers)
     return {
         "labels": _columns(labels),
         "damage": _columns(damage) or {"record_id": [], "gear": [], "tooth": []},
@@ -383,6 +403,8 @@ LEARNT = str(Path(__file__).with_name("siggen_bench.yaml"))
 RECORD_S, START_S = 0.21, 0.9
 """Seconds of CPU for a second of signal, and seconds of signal that cost as much as a start: `full` took 0.5 s a record
 of 1.5 s on one core of a server (November 2026)."""
+BY_ITSELF = 2.0
+"""Records that one costs whose gearbox has no other: 1.0 s of CPU beside 0.5 s (three of `full`, November 2026)."""
 
 SECRET_FILE, SIMULATED, CARD = "secret", "simulated", "README.md"
 
@@ -439,13 +461,14 @@ def make_benchmark(
 
 def cost_sentence(learn: Any) -> str:
     """Return what each tier costs with a configuration to learn from, in minutes of CPU."""
-    parts = len(question_of(learn.canonical()).parts(CONDITIONS))
-    records = {name: (size.learn + parts * size.test) * learn.records_per_specimen for name, size in TIERS.items()}
-    a_record_s = RECORD_S * (START_S + learn.duration_s)
-    said = ", ".join(
-        f"{name} {counted(one, 'record')}, {one * a_record_s / 60:.0f} min" for name, one in records.items()
-    )
-    return f"CPU time to simulate: {said}"
+    each, names = learn.records_per_specimen, question_of(learn.canonical()).parts(CONDITIONS)
+    a_record_s, said = RECORD_S * (START_S + learn.duration_s), []
+    for tier, size in TIERS.items():
+        by_itself = size.test * sum(map(is_alone, names))
+        others = each * (size.learn + size.test * sum(not is_alone(name) for name in names))
+        minutes = a_record_s * (others + BY_ITSELF * by_itself) / 60
+        said.append(f"{tier} {counted(others + by_itself, 'record')}, {minutes:.0f} min")
+    return f"CPU time to simulate: {', '.join(said)}"
 
 
 def write_benchmark(
@@ -496,13 +519,21 @@ def write_benchmark(
     conditions = question.parts(conditions or question.conditions)
     tests = {name: _test_config(learn, name, conditions[name], gearboxes, secret) for name in conditions}
     _write_learn(learn, out / LEARN, hidden, facts, workers)
-    parts = {}
+    parts, states = {}, dict[str, dict[int, tuple[str, str]]]()
     for place, (name, config) in enumerate(tests.items()):
-        dataset = _simulated(config, hidden / SIMULATED / name, workers)
-        numbers = renumbered(dataset, question.shown(dataset.labels().to_pylist(), secret, name), secret, name, place)
+        if is_alone(name):
+            part, shown = _chosen(config, states[name.removesuffix(ALONE)], question, secret, name, workers)
+        else:
+            dataset = _simulated(config, hidden / SIMULATED / name, workers)
+            signals = [channel.column for channel in dataset.channels]
+            part = SimulatedPart(dataset.labels(), dataset.damage(), dataset.records(batch_rows=16), signals)
+            rows = part.labels.to_pylist()
+            states[name] = {row["state_id"]: (row["state"], row["fault"]) for row in rows}
+            shown = question.shown(rows, secret, name)
+        numbers = renumbered(part, shown, secret, name, place)
         seen, kept = life_tables(dataset, numbers) if question is LIFE_QUESTION else ({}, {})
-        parts[name] = sealed_part(dataset, numbers, kept)
-        _write_blind(dataset, numbers, (learn, config), out / TESTS / name, question, seen)
+        parts[name] = sealed_part(part, numbers, kept)
+        _write_blind(part, numbers, (learn, config), out / TESTS / name, question, seen)
     told = benchmark_facts(out, question.title, tier, tuple(tests))
     sealed = {
         "salt": derived(secret, "salt").hex(),
@@ -541,16 +572,41 @@ def _simulated(config: Any, folder: Path, workers: int | None) -> Dataset:
     return open_set(folder)
 
 
-def _signal(folder: Path, record: int, column: str) -> np.ndarray:
-    """Return a signal of a record, empty where the set has none."""
-    try:
-        return np.asarray(open_set(folder).record(record)[column])
-    except (UsageError, KeyError):  # it has no such record, or channel
-        return np.empty(0)
+def _chosen(
+    config: Any,
+    states: Mapping[int, tuple[str, str]],
+    question: Question,
+    secret: bytes,
+    name: str,
+    workers: int | None,
+) -> tuple[SimulatedPart, PublishedRecords]:
+    """Return the records of a part that are published, and which they are; in place of one that fails the next one.
+
+    `states` are name and fault of each, which are those of the part beside it.
+    """
+    rows = [
+        {
+            "record_id": one.record_id,
+            "specimen_id": one.specimen_id,
+            "state_id": one.state_id,
+            **dict(zip(("state", "fault"), states[one.state_id], strict=True)),
+        }
+        for one in siggen.plan(config)
+        if one.state_id in states
+    ]
+    while True:
+        published = question.shown(rows, secret, name)
+        found = siggen.simulate_records(config, sorted(published.state_id), workers)
+        if not found.failures:
+            break
+        lost = {failure.record_id for failure in found.failures}
+        rows = [row for row in rows if row["record_id"] not in lost]
+    signals = [channel.column for channel in found.channels]
+    return SimulatedPart(found.labels, found.damage, found.rows.to_batches(), signals), published
 
 
 def _write_blind(
-    dataset: Dataset,
+    part: SimulatedPart,
     numbers: Renumbered,
     configs: tuple[Any, Any],
     folder: Path,
@@ -564,14 +620,21 @@ def _write_blind(
     DatasetError
         If another one is there: labels would be those of other records.
     """
+    rows = blind_rows(part, numbers)
     if (folder / "manifest.json").is_file():
-        old, new = next(iter(numbers.record.items()))
-        column = dataset.channels[0].column
-        if not np.array_equal(dataset.record(old)[column], _signal(folder, new, column)):
+        if not _holds(open_set(folder), rows[0], part.signals[0]):
             raise DatasetError(f"{folder}: was made with another secret or configuration; name a new folder")
         return
     shutil.rmtree(folder, ignore_errors=True)  # what a call that was stopped had half written
     learn, own = configs
-    rows, facts = blind_rows(dataset, numbers), {"benchmark": question.title, "part": folder.name}
+    facts = {"benchmark": question.title, "part": folder.name}
     card = question.part_card(question.title, folder.name, rows)
-    siggen.write_recorded_set(learn, folder, rows, condition_fields(dataset), facts, card, measured=own, life=life)
+    siggen.write_recorded_set(learn, folder, rows, condition_fields(part.labels), facts, card, measured=own, life=life)
+
+
+def _holds(published: Dataset, row: Mapping[str, Any], column: str) -> bool:
+    """Return whether a part holds the first signal of a row."""
+    try:
+        return np.array_equal(published.record(row["record_id"])[column], row["signals"][0])
+    except (UsageError, KeyError):  # it has no such record, or channel
+        return False

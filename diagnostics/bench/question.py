@@ -224,7 +224,8 @@ def _one_of_each(rows: list[dict[str, Any]], secret: bytes, name: str) -> Iterat
     for place, gearbox in enumerate(shuffled(secret, f"shown/{name}", {row["specimen_id"] for row in rows})):
         own = states[place % 2] or states[1 - place % 2]
         first = place // 2 % len(own)
-        held = next(known[gearbox, one] for one in own[first:] + own[:first] if (gearbox, one) in known)
+        tried = (*own[first:], *own[:first], *states[1 - place % 2])  # of those that a gearbox lost the next
+        held = next(known[gearbox, one] for one in tried if (gearbox, one) in known)
         yield shuffled(secret, f"records of {gearbox}/{name}", held)[0]
 
 

@@ -15,6 +15,7 @@ from typing import Any
 
 import siggen
 from siggen.dataset.reading import Dataset
+from siggen.sets.chosen_records import ChosenRecords
 from siggen.sets.streaming import RecordStream
 
 ROOT = Path(__file__).parents[2]
@@ -128,6 +129,7 @@ def page() -> str:
         parts.append(
             entry(f"{name}(...)", returned).replace(f"`siggen.{name}(...)`", f"What `siggen.{name}` returns") + "\n"
         )
+    parts.append(entry("ChosenRecords", ChosenRecords) + "\n")
     return "\n".join([*parts, of_diagnostics()])
 
 

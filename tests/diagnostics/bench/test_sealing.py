@@ -5,7 +5,9 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -14,10 +16,13 @@ import pytest
 
 import diagnostics
 import siggen
+from diagnostics.bench.making import Tier
 from diagnostics.scoring.benchmark import open_benchmark
+from siggen.columns.record import RecordFailure
 from siggen.errors import DatasetError
+from siggen.sets.chosen_records import ChosenRecords
 from tests.command import Ended, command
-from tests.diagnostics.bench.conftest import SECRET, Made, make
+from tests.diagnostics.bench.conftest import GEARBOXES, SECRET, Made, make
 
 AREA = "damaged_area_mm2"
 FACTS = """
@@ -99,6 +104,51 @@ def test_what_is_revealed_makes_the_test_parts_again(made: Made) -> None:
     published = made.benchmark.part("same").record(record)
     (column, *_) = (channel.column for channel in made.benchmark.part("same").channels)
     assert np.array_equal(next(iter(made_again.channels.values())), published[column])
+
+
+def test_a_part_that_is_judged_alone_holds_the_records_of_its_whole_set_and_only_they_are_simulated(
+    made: Made, tmp_path: Path
+) -> None:
+    content = json.loads(made.sealed.read_text())
+    sealed_part = content["parts"]["same_alone"]
+    siggen.generate(siggen.load_config(content["configurations"]["same_alone"]), tmp_path / "whole", executor="serial")
+    whole, part = siggen.open(tmp_path / "whole"), made.benchmark.part("same_alone")
+    assert not made.simulated("same_alone").exists()
+    told = sealed_part["labels"]
+    rows = {row["record_id"]: row for row in whole.labels().to_pylist()}
+    teeth = whole.damage().to_pylist()
+    assert len(told["record_id"]) == GEARBOXES
+    for place, (record, simulated) in enumerate(zip(told["record_id"], told["simulated_record_id"], strict=True)):
+        published, again = part.record(record), whole.record(simulated)
+        for name in (*(channel.column for channel in part.channels), "tacho_s"):
+            assert published[name].tobytes() == again[name].tobytes()
+        named = set(told) - {"record_id", "simulated_record_id"}
+        assert {name: told[name][place] for name in named} == {name: rows[simulated][name] for name in named}
+        damaged = zip(*(sealed_part["damage"][name] for name in ("record_id", "gear", "tooth")), strict=True)
+        expected = [(row["gear"], row["tooth"]) for row in teeth if row["record_id"] == simulated]
+        assert [(gear, tooth) for one, gear, tooth in damaged if one == record] == expected
+
+
+def test_in_place_of_a_record_that_fails_the_next_one_is_published(
+    made: Made, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The very choice that a set without that record would give."""
+    told = json.loads(made.sealed.read_text())["parts"]["same_alone"]["labels"]
+    simulate, lost = siggen.simulate_records, told["simulated_record_id"][0]
+
+    def failing(design: Any, record_ids: list[int], workers: int | None) -> ChosenRecords:
+        left = [one for one in record_ids if one != lost or design.name != "linear_pits_same_alone"]
+        failures = (RecordFailure(lost, "outside_model", "planted"),) if len(left) < len(record_ids) else ()
+        return replace(simulate(design, left, workers), failures=failures)
+
+    monkeypatch.setattr(siggen, "simulate_records", failing)
+    again = make(tmp_path, Tier(6, GEARBOXES))
+    other = json.loads(again.sealed.read_text())["parts"]["same_alone"]["labels"]
+    rows = dict(zip(other["simulated_record_id"], other["state"], strict=True))
+    (instead,) = rows.keys() - set(told["simulated_record_id"])
+    each = again.benchmark.learn().inventory.rows // 6
+    assert instead // each == lost // each
+    assert set(told["simulated_record_id"]) - rows.keys() == {lost}
 
 
 def test_the_secret_alone_decides_seeds_and_order(made: Made, tmp_path: Path) -> None:
