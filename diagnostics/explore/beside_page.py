@@ -72,7 +72,6 @@ def beside_source(measured: PageSource, simulated: PageSource) -> PageSource:
         teeth=simulated.teeth,
         named=simulated.named,
         damage=simulated.damage,
-        flanks=lambda row: simulated.flanks(row - ours) if row >= ours else {},
         quantities=simulated.quantities,
         held=simulated.held,
         internals=lambda wanted, detail, fine: [

@@ -476,8 +476,6 @@ class PageSource:
         Name, channel, title, definition and packed values of each.
     damage : callable
         Returns outlines by record, of these numbers; nothing where unknown.
-    flanks : callable
-        Returns the size of the flanks of the gears of a row, None where unknown.
     quantities : list of dict
         What the source stores of what no sensor sees.
     internals : callable
@@ -507,7 +505,6 @@ class PageSource:
     teeth: tuple[str, ...]
     further: dict[str, np.ndarray] = field(default_factory=dict)
     damage: Callable[[np.ndarray], Mapping[int, list[dict[str, Any]]]] = lambda _numbers: {}
-    flanks: Callable[[int], dict[str, Any]] = lambda _row: {}
     quantities: Sequence[dict[str, str]] = ()
     internals: Callable[[np.ndarray, Detail, list[tuple[int, int]]], list[dict[str, Any]]] = (
         lambda numbers, _detail, _fine: [{} for _ in numbers]
@@ -587,7 +584,7 @@ def page_head(source: PageSource, axes: PageAxes, shown: RecordList) -> dict[str
 
 
 def page_details(source: PageSource, axes: PageAxes, rows: np.ndarray, stage: Stage) -> dict[int, dict[str, Any]]:
-    """Return signals, spectra, averages, damage and flanks by row.
+    """Return signals, spectra, averages and damage by row.
 
     Parameters
     ----------
@@ -611,7 +608,7 @@ def page_details(source: PageSource, axes: PageAxes, rows: np.ndarray, stage: St
     fine = [next(iter(views[int(row)]["channels"].values()))["wave"]["fine"] for row in rows]
     damage, internals = source.damage(numbers), source.internals(numbers, axes.detail, fine)
     return {
-        row: {**views[row], "damage": damage.get(number, []), "flanks": source.flanks(row), "internals": inner}
+        row: {**views[row], "damage": damage.get(number, []), "internals": inner}
         for (number, row), inner in zip(row_of.items(), internals, strict=True)
     }
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
-from math import acos, cos, pi, radians, tan
 from typing import Any
 
 import numpy as np
@@ -118,39 +117,12 @@ def overlaid_records(labels: Mapping[str, np.ndarray]) -> list[int | None]:
 
 ELLIPSE_CORNERS = 48
 DIGITS = 3
-
-
-def flank_size(
-    module_mm: object, pressure_angle_deg: object, face_width_mm: object, profile_shift: object, teeth: int
-) -> dict[str, float] | None:
-    """Return face width and heights of pitch circle and tip above the flank's point on the base circle [mm].
-
-    Heights lie along the tooth's axis, as in the table of damage: r cos(g_r) - R_b cos(g_b) with the half tooth angle
-    g_r = pi/2z + 2 x tan(alpha)/z + inv(alpha) - inv(alpha_r). Source: derived from the involute.
-
-    Returns
-    -------
-    dict or None
-        None where the configuration draws one of these numbers.
-    """
-    numbers = module_mm, pressure_angle_deg, face_width_mm, profile_shift
-    plain = [number for number in numbers if isinstance(number, float)]
-    if len(plain) < len(numbers):
-        return None
-    module, degrees, face, shift = plain
-    alpha, tip, pitch = radians(degrees), module * (teeth / 2 + 1.0 + shift), module * teeth / 2
-    base = pitch * cos(alpha)
-    half = pi / (2 * teeth) + 2 * shift * tan(alpha) / teeth + tan(alpha) - alpha
-
-    def height_mm(radius: float) -> float:
-        slope = acos(base / radius)
-        return round(radius * cos(half - (tan(slope) - slope)) - base * cos(half), DIGITS)
-
-    return {"face_mm": face, "pitch_mm": height_mm(pitch), "tip_mm": height_mm(tip)}
+FLANK = {"face_mm": "face_width_mm", "pitch_mm": "pitch_height_mm", "tip_mm": "tip_height_mm"}
+"""Size of the damaged gear's flanks, and the columns that hold it."""
 
 
 def outlines(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return the damage of a record: gear, tooth, kind, depth, and corners (face, height) of the outline [mm]."""
+    """Return the damage of a record: gear, tooth, kind, depth, corners (face, height) of the outline, flank [mm]."""
     return [
         {
             "gear": row["gear"],
@@ -158,6 +130,7 @@ def outlines(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
             "kind": row["kind"],
             "depth_mm": round(float(row["depth_mm"]), DIGITS),
             "corners": _corners(row),
+            "flank": {end: round(float(row[column]), DIGITS) for end, column in FLANK.items()},
         }
         for row in rows
     ]
@@ -222,7 +195,6 @@ def set_source(dataset: Dataset, table: RecordTable, kept: np.ndarray) -> PageSo
         held=channel_quantities(dataset),
         named=table.named,
         damage=lambda numbers: _damage(damage_table(), numbers),
-        flanks=lambda row: flank_sizes(dataset, {gear: int(labels[name][row]) for gear, name in teeth.items()}),
         quantities=shown_internals(dataset),
         internals=lambda numbers, detail, fine: internal_waves(dataset, numbers, detail, fine),
     )
@@ -300,8 +272,3 @@ def _damage(table: pa.Table | None, ids: np.ndarray) -> dict[int, list[dict[str,
     for row in kept:
         by_record.setdefault(row["record_id"], []).append(row)
     return {record: outlines(found) for record, found in by_record.items()}
-
-
-def flank_sizes(dataset: Dataset, teeth: Mapping[str, int]) -> dict[str, dict[str, float] | None]:
-    """Return the flank's size of every gear but a ring, by its number of teeth."""
-    return {gear: flank_size(*law, teeth[gear]) for gear, law in dataset.gears.items()}

@@ -31,6 +31,9 @@ DAMAGE_COLUMNS = (
         MILLIMETRE,
         "semi-axis along the tooth's axis; of a polygon half its range",
     ),
+    Column("face_width_mm", pa.float64(), MILLIMETRE, "of the damaged gear; 0 where damage is on none"),
+    Column("pitch_height_mm", pa.float64(), MILLIMETRE, "of its pitch circle, as height_mm"),
+    Column("tip_height_mm", pa.float64(), MILLIMETRE, "of its tip, as height_mm"),
     Column("depth_mm", pa.float64(), MILLIMETRE, "largest depth"),
     Column("depth_law", pa.string(), "", "how the depth runs: flat or dish"),
     Column(

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -24,11 +24,8 @@ from siggen.dataset.shard import ABOUT, columns_of, unpacked
 from siggen.dataset.storage import HOW_TO_GO_ON, Storage
 from siggen.dataset.storage_at import storage_at
 from siggen.dataset.table_form import check_form, form_of
-from siggen.errors import ConfigError, DatasetError, UsageError, VerificationError, counted
+from siggen.errors import DatasetError, UsageError, VerificationError, counted
 from siggen.keys.column import Column, Role
-
-if TYPE_CHECKING:
-    from siggen.gearbox.design import FlankLaw
 
 _Loader = yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
 """The safe one, by libyaml where PyYAML was built with it."""
@@ -123,19 +120,6 @@ class Dataset:
     def columns_of(self, quantity: str) -> dict[str, str]:
         """Return the columns of records that hold a quantity, by the gear, shaft or mesh that they are about."""
         return {column.of: name for name, column in self._listed.items() if column.quantity == quantity}
-
-    @cached_property
-    def gears(self) -> dict[str, FlankLaw]:
-        """What the configuration says of the flanks of every gear, by its name; no ring.
-
-        Empty for a configuration of another version.
-        """
-        from siggen.gearbox.design import design_of
-
-        try:
-            return design_of(self.config, CONFIG).flanks
-        except ConfigError:
-            return {}
 
     @cached_property
     def _listed(self) -> dict[str, ListedColumn]:

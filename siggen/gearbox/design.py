@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 from math import ceil
-from typing import Any, NamedTuple
+from typing import Any
 
 from siggen.config import Config, by_reference, parse
 from siggen.config.config import MOST_SPECIMENS
@@ -21,7 +21,7 @@ from siggen.gearbox.draw import draw_operating_point, draw_specimen
 from siggen.gearbox.life import Lived
 from siggen.gearbox.possible import PossibleGearbox
 from siggen.gearbox.specimen import OperatingPoint, Specimen
-from siggen.keys.number import Number, bounds
+from siggen.keys.number import bounds
 from siggen.keys.yaml_source import STORED_NUMBERS, parse_yaml, yaml_text
 from siggen.names import EITHER, Names
 from siggen.sensors.places import Places
@@ -31,15 +31,6 @@ STATING = "exponential"
 """The integrator that states an error."""
 TRIED = 100
 """Gearboxes of a set of which one at least has to be drawn."""
-
-
-class FlankLaw(NamedTuple):
-    """Numbers of the flanks of a gear, as they are given or drawn."""
-
-    module_mm: Number
-    pressure_angle_deg: Number
-    face_width_mm: Number
-    profile_shift: Number
 
 
 @dataclass(frozen=True)
@@ -217,16 +208,6 @@ class SetDesign:
             return (False,) * 2 * len(self.config.planetary.positions_deg)
         pairs = (self.config.gears, *(stage.gears for stage in self.config.stages))
         return tuple(one.helix_deg != 0.0 for one in pairs)
-
-    @property
-    def flanks(self) -> dict[str, FlankLaw]:
-        """The flanks of every gear by its name; no ring."""
-        forms = (self.config.gears, *(stage.gears for stage in self.config.stages))
-        return {
-            gear.word: FlankLaw(form.module_mm, form.pressure_angle_deg, form.face_width_mm, wheel.profile_shift)
-            for mesh, form in zip(self.names.meshes, forms, strict=False)
-            for gear, wheel in zip(mesh.gears, (form.pinion, form.gear), strict=True)
-        }
 
     @cached_property
     def possible(self) -> PossibleGearbox:

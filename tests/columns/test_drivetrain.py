@@ -12,7 +12,6 @@ from siggen.columns.drivetrain import GearTrain
 from siggen.columns.record import listed_columns, record_schema
 from siggen.sets.drawn import set_columns
 from tests.config.idler import idler
-from tests.config.mill import mill
 from tests.config.planets import planets
 from tests.config.staged import staged
 from tests.dataset.fake_set import copy_fake_set, fake_config
@@ -65,16 +64,3 @@ def test_a_finished_set_gives_its_drivetrain_and_the_columns_about_its_parts(tmp
     assert asdict(dataset.drivetrain) == asdict(set_columns(fake_config()).drivetrain)
     assert dataset.columns_of("teeth") == {"pinion": "teeth_pinion", "gear": "teeth_gear"}
     assert dataset.columns_of("shaft_hz")["gear"] == "gear_shaft_hz"
-
-
-def test_a_set_gives_the_sections_of_every_gear_but_a_ring_by_its_name(tmp_path: Path) -> None:
-    copy_fake_set(tmp_path)
-    for raw, widths in (
-        (staged(), {"pinion": 20.0, "gear": 20.0, "slow_pinion": 30.0, "slow_gear": 30.0}),
-        (mill(), {"ida": 20.0, "otto": 20.0, "eva": 30.0, "karl": 30.0}),
-        (planets(), {"sun": 20.0, "planet": 20.0}),
-        ({"name": "of another version"}, {}),
-    ):
-        dataset = siggen.open(tmp_path)
-        dataset.config = raw
-        assert {gear: law.face_width_mm for gear, law in dataset.gears.items()} == widths

@@ -90,6 +90,7 @@ class MemoryDataset(ListedRoles):
         gears = ["gear" if row["specimen_id"] % 2 else "pinion" for row in damaged]
         teeth = [row["specimen_id"] % TEETH[0] for row in damaged]
         ellipse = {"face_mm": 10.0, "height_mm": 3.0, "semi_axis_face_mm": 1.0, "semi_axis_profile_mm": 0.5}
+        flank = {"face_width_mm": 20.0, "pitch_height_mm": 2.5, "tip_height_mm": 5.0}
         same = {
             "kind": "spall",
             "shape": "ellipse",
@@ -98,6 +99,7 @@ class MemoryDataset(ListedRoles):
             "polygon_face_mm": [],
             "polygon_height_mm": [],
             **ellipse,
+            **flank,
         }
         rows = [
             {"record_id": row["record_id"], "gear": gear, "tooth": tooth, **same}

@@ -12,7 +12,7 @@ from siggen.columns.record import SimulatedRecord, record_schema
 from siggen.errors import ConfigError
 from siggen.gearbox.design import SetDesign
 from siggen.sets.drawn import set_columns
-from tests.config.minimal import by_name, minimal
+from tests.config.minimal import by_name, design, minimal
 from tests.simulated import damage_rows, simulate
 
 SIZE = {"face_length_mm": 6.0, "profile_length_mm": 1.0, "depth_mm": 0.3}
@@ -118,6 +118,34 @@ def test_each_fault_has_its_rows_in_one_table() -> None:
         ("bearing_spall", "none", -1, "pinion_bearing", "outer"),
     }
     assert len(rows) == len(found)
+
+
+def test_a_row_has_the_size_of_the_flanks_of_its_gear() -> None:
+    """Heights above the base circle from the half angle of the tooth at each radius, without the gear's own functions.
+
+    A gear drawn for each gearbox has its own; damage of a bearing has none.
+    """
+    wear, bearing = {"kind": "wear", "depth_um": 5.0}, {"kind": "bearing_spall", "element": "outer", "length_mm": 2.0}
+    shifts = {"pinion": 0.3, "gear": -0.1}
+    changes = {f"gears__{gear}__profile_shift": shift for gear, shift in shifts.items()}
+    changes["gears__face_width_mm"] = [18.0, 22.0]
+    rows = damage_rows(design(**changes, specimens=1, states=by_name([{"name": "healthy"}, state(wear, bearing)])), 1)
+    by_gear = {row["gear"]: row for row in rows}
+    sizes = ("face_width_mm", "pitch_height_mm", "tip_height_mm")
+    for gear, teeth in (("pinion", 18), ("gear", 47)):
+        radius_mm, alpha = 1.5 * teeth, np.radians(20.0)
+        base_mm = radius_mm * np.cos(alpha)
+        half = (np.pi / 2 + 2 * shifts[gear] * np.tan(alpha)) / teeth + np.tan(alpha) - alpha
+        tips = [radius_mm, radius_mm + 3.0 * (1.0 + shifts[gear])]
+        slopes = [np.arccos(base_mm / r) for r in tips]
+        heights = [
+            r * np.cos(half - (np.tan(slope) - slope)) - base_mm * np.cos(half)
+            for r, slope in zip(tips, slopes, strict=True)
+        ]
+        face, *found = (by_gear[gear][name] for name in sizes)
+        assert found == pytest.approx(heights, rel=1e-9)
+        assert 18.0 < face < 22.0
+    assert [by_gear["none"][name] for name in sizes] == [0.0, 0.0, 0.0]
 
 
 def test_a_sham_may_have_several() -> None:

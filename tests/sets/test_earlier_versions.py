@@ -28,7 +28,7 @@ def test_a_set_of_another_version_is_refused_in_words_by_whatever_reads_it(tmp_p
     copy_fake_set(tmp_path)
     say(tmp_path, schema_version=version)
     for reads in (siggen.open, verify, write_fake_set):
-        with pytest.raises(DatasetError, match=f"received schema version {version}; allowed is 6. Another version"):
+        with pytest.raises(DatasetError, match=f"received schema version {version}; allowed is 7. Another version"):
             reads(tmp_path)
 
 

@@ -8,7 +8,8 @@ Explore.svg = (tag, attributes, text) => {
 
 Explore.MOST_FLANKS = 12;
 
-Explore.flank = (gear, tooth, damages, size) => {
+Explore.flank = (gear, tooth, damages) => {
+  const size = damages[0].flank;
   const margin = 0.6;
   const width = size.face_mm + 2 * margin;
   const height = size.tip_mm + 2 * margin;
@@ -35,19 +36,17 @@ Explore.showFlank = (section, row) => {
   body.replaceChildren();
   section.hidden = Explore.data.measured;
   const record = Explore.records[row];
-  const { damage: damages, flanks: sizes } = Explore.detail(row);
-  const teeth = Explore.damagedTeeth(row);
+  const { damage: damages } = Explore.detail(row);
+  const teeth = Explore.damagedTeeth(row).filter(([gear]) => gear !== "none");
   if (!teeth.length) {
-    const why = Explore.isRecording(row) ? "A recording does not tell its damage." : record.fault === "healthy" ? "This record is healthy." : "The table of damage names none for this record.";
+    const why = Explore.isRecording(row) ? "A recording does not tell its damage." : record.fault === "healthy" ? "This record is healthy." : "The table of damage names no gear for this record.";
     return void body.append(Explore.element("p", why));
   }
   const flanks = Explore.element("div", "", { class: "flanks" });
   for (const [gear, tooth] of teeth.slice(0, Explore.MOST_FLANKS)) {
-    const size = sizes[gear];
-    if (!size) return void body.append(Explore.element("p", "The set's configuration draws the size of this gear, or cannot be read, so that its flanks have no scale."));
-    flanks.append(Explore.flank(gear, tooth, damages.filter((damage) => damage.gear === gear && damage.tooth === tooth), size));
+    flanks.append(Explore.flank(gear, tooth, damages.filter((damage) => damage.gear === gear && damage.tooth === tooth)));
   }
-  const size = sizes[teeth[0][0]];
+  const size = damages.find((damage) => damage.gear === teeth[0][0]).flank;
   const more = teeth.length > Explore.MOST_FLANKS ? ` ${Explore.MOST_FLANKS} of ${teeth.length} flanks are drawn.` : "";
   body.append(flanks, Explore.element("p", `Face ${Explore.number(size.face_mm)} mm wide, from the base circle (below) to the tip (above); dashed: pitch circle. The stronger the colour, the deeper.${more}`));
 };

@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 
 from diagnostics.explore.payload import Detail, OrderAxis, PageAxes, record_views
-from diagnostics.explore.set_source import flank_size, outlines
+from diagnostics.explore.set_source import outlines
 from diagnostics.records.gear_train import pair_train
 from diagnostics.records.recording import Recording
 from diagnostics.signal.spectrum import envelope_spectrum
-from siggen.damage.heights import flank_heights
-from siggen.gears.spur_gear import SpurGear
 from tests.diagnostics.explore.unpacked import steps
 
 TEETH = (10, 14)
@@ -72,21 +70,10 @@ def test_the_largest_line_about_a_point_is_kept_and_gaps_take_the_nearest() -> N
     assert coarse[:6].tolist() == [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]
 
 
-@pytest.mark.parametrize(("teeth", "shift"), [(25, 0.0), (19, 0.4), (56, -0.2)])
-def test_flank_heights_are_those_of_the_simulated_gear(teeth: int, shift: float) -> None:
-    gear = SpurGear(teeth, 2e-3, math.radians(20.0), shift, 1.0, 0.25, 5e-3)
-    found = flank_size(2.0, 20.0, 20.0, shift, teeth)
-    assert found is not None
-    assert found["tip_mm"] == pytest.approx(1e3 * flank_heights(gear)[1], abs=1e-3)
-
-
-def test_a_flank_that_is_drawn_at_random_has_no_scale() -> None:
-    assert flank_size([1, 2], 20.0, 20.0, 0.0, 20) is None
-
-
 def test_an_elliptic_pit_keeps_its_axes() -> None:
     row = {"gear": "gear", "tooth": 3, "kind": "pit", "depth_mm": 0.1, "polygon_face_mm": [], "polygon_height_mm": []}
     row |= {"face_mm": 8.0, "height_mm": 2.0, "semi_axis_face_mm": 1.5, "semi_axis_profile_mm": 0.5}
+    row |= {"face_width_mm": 20.0, "pitch_height_mm": 2.5, "tip_height_mm": 5.0}
     corners = np.array(outlines([row])[0]["corners"])
     assert np.ptp(corners, axis=0).tolist() == [3.0, 1.0]
     assert corners.mean(axis=0).tolist() == pytest.approx([8.0, 2.0], abs=1e-3)
