@@ -26,7 +26,7 @@ DEFAULT = (
     *("workers", "quickstart", "indicators", "pages", "house"),
 )
 """CPU time and memory first, then wall time, then what takes long."""
-APART = ("anywhere", "start", "many_workers", "growth")
+APART = ("anywhere", "start", "many_workers", "growth", "stream")
 """Only where they are named: each takes long."""
 
 
