@@ -78,18 +78,17 @@ def test_a_spall_moves_the_indicators_of_its_member_and_not_of_the_other(
 def test_pages_and_tables_name_members_and_never_a_pair(made: Path, features: pa.Table) -> None:
     assert {"teeth_sun", "teeth_ring", "revolutions_sun", "revolutions_ring"} <= set(features.column_names)
     assert not [name for name in features.column_names if "pinion" in name or "gear" in name]
-    assert np.isnan(features["sideband_h1_upper1_sun__ring_horizontal"].to_numpy()).all()  # 11 turns of 17
+    assert np.isnan(features["sideband_sun_h1_upper1__ring_horizontal"].to_numpy()).all()  # 11 turns of 17
     assert "1 (needs 17)" in features["notes"][0].as_py()
     names = json.loads((made / "report/models/feature_names.json").read_text(encoding="utf-8"))
     assert "fm4_planet__ring_horizontal" in json.dumps(names)
     page = (made / "report/report.html").read_text(encoding="utf-8")
-    assert "turn of the sun against the carrier" in page
-    assert '"shafts":["sun","planet","ring"]' in page
+    assert '"gears":["sun","planet","ring"],"planetary":true' in page  # so orders are of a turn against the carrier
 
 
 def test_models_of_planetary_sets_judge_sets_and_no_recordings(made: Path) -> None:
     record = made / "record.csv"
-    record.write_text("ring_horizontal\n" + "\n".join(str(k % 7) for k in range(20_000)), encoding="utf-8")
+    record.write_text("ring_horizontal [m/s2]\n" + "\n".join(str(k % 7) for k in range(20_000)), encoding="utf-8")
     told = run(
         "diagnostics",
         "predict",
@@ -103,5 +102,5 @@ def test_models_of_planetary_sets_judge_sets_and_no_recordings(made: Path) -> No
         "20,30",
     )
     assert told.returncode == 2
-    assert "planetary sets with planet, ring, sun" in told.stderr
+    assert "planetary sets with sun, planet, ring" in told.stderr
     assert "Traceback" not in told.stderr
