@@ -80,8 +80,8 @@ class RecordStream:
         first = block * self.mixed
 
         def room() -> bool:
-            # what is mixed, and what workers have under way while it is used up
-            return len(made) < 2 * self.mixed + OPEN_PER_WORKER * self._workers.count
+            # the gearboxes mixed next, while those before are used up
+            return len(made) < self.mixed + OPEN_PER_WORKER * self._workers.count
 
         tasks = (self._record_ids(number) for number in count(first))
         with closing(results(self._workers, physics.simulation(self.design), tasks, room=room)) as answers:
