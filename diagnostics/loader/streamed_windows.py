@@ -11,6 +11,7 @@ mixed at a time are made before the next ones come, each in another order.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -65,17 +66,20 @@ class StreamedWindows(IterableDataset[tuple[torch.Tensor, Any]]):  # type: ignor
         chosen = settings or StreamSettings()
         if not hasattr(stream, "blocks"):
             raise UsageError(f"stream: received a {type(stream).__name__}; allowed: what siggen.stream returns")
-        if chosen.samples_per_revolution is None:
-            raise UsageError("settings: received samples_per_revolution=None; allowed: a number of angle steps")
-        if type(reuse) is not int or not 1 <= reuse <= MOST_REUSE:
+        steps = getattr(chosen, "samples_per_revolution", None)
+        if not isinstance(steps, int):
+            raise UsageError(f"settings: received {chosen!r}; allowed: StreamSettings with a number of angle steps")
+        if not callable(target):
+            raise UsageError(f"target: received {target!r}; allowed: a function of a record")
+        if isinstance(reuse, bool) or not isinstance(reuse, (int, Integral)) or not 1 <= reuse <= MOST_REUSE:
             raise UsageError(f"reuse: received {reuse!r}; allowed: whole numbers from 1 to {MOST_REUSE}")
-        self.stream, self.settings, self.reuse, self.target = stream, chosen, reuse, target
+        self.stream, self.settings, self.reuse, self.target = stream, chosen, int(reuse), target
         self.columns = tuple(one.column for one in stream.channels if chosen.quantity in (None, one.quantity))
         if not self.columns:
             held = ", ".join(sorted({one.quantity for one in stream.channels}))
             raise UsageError(f"settings: received the quantity {chosen.quantity!r}; allowed: {held}, or None")
         self._given = 0
-        self._steps = chosen.samples_per_revolution
+        self._steps = steps
 
     def __iter__(self) -> Iterator[tuple[torch.Tensor, Any]]:
         """Yield windows from the present place on."""
@@ -87,6 +91,10 @@ class StreamedWindows(IterableDataset[tuple[torch.Tensor, Any]]):  # type: ignor
                 turns = self.settings.revolutions
                 raise UsageError(
                     f"settings: no record holds a window of {turns} revolutions; give a longer `duration_s`"
+                )
+            if self._given > self.reuse * len(windows):
+                raise UsageError(
+                    f"given: received {self._given}; allowed: up to {self.reuse * len(windows)} at this place"
                 )
             block = self.stream.state_dict()["passed"]
             for number in range(self._given // len(windows), self.reuse):
@@ -118,17 +126,21 @@ class StreamedWindows(IterableDataset[tuple[torch.Tensor, Any]]):  # type: ignor
         UsageError
             If they had another stream, other windows or another reuse.
         """
-        facts = self._facts()
+        if not isinstance(state, Mapping):
+            raise UsageError(f"state: received {state!r}; allowed: what state_dict returned")
+        facts, given = self._facts(), state.get("given")
         differing = [f"{name} {state.get(name)!r} instead of {facts[name]!r}" for name in facts
                      if state.get(name) != facts[name]]  # fmt: skip
         if differing:
             raise UsageError(f"the place belongs to other windows: {', '.join(differing)}")
-        self.stream.load_state_dict(state["stream"])
-        self._given = int(state["given"])
+        if type(given) is not int or given < 0:
+            raise UsageError(f"given: received {given!r}; allowed: whole numbers from 0")
+        self.stream.load_state_dict(state.get("stream"))
+        self._given = given
 
     def _facts(self) -> dict[str, Any]:
         chosen = self.settings
         return {
             "revolutions": chosen.revolutions, "hop_revolutions": chosen.hop_revolutions,
-            "samples_per_revolution": self._steps, "reuse": self.reuse,
+            "samples_per_revolution": self._steps, "reuse": self.reuse, "channels": list(self.columns),
         }  # fmt: skip

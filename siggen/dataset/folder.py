@@ -54,13 +54,14 @@ def content_of(storage: Storage, design: SetDesign) -> FolderContent:
     """
     manifest = _manifest(storage)
     if manifest is None or manifest.identity != design.identity:
+        names = storage.names()  # before what another part may write meanwhile
         if not storage.exists(CONFIG):
             if manifest is not None:
                 raise DatasetError(
                     f"{storage.location} holds a set of another configuration, says its {MANIFEST}; allowed: the one "
                     "that it was made of, with all that was changed in it then"
                 )
-            _refuse_strangers(storage)
+            _refuse_strangers(storage, names)
             return FolderContent()
         there = _refuse_other_set(storage, design)
         if there != design.specimens:
@@ -131,8 +132,7 @@ def _other_count(storage: Storage, there: int, now: int, state: str) -> DatasetE
     )
 
 
-def _refuse_strangers(storage: Storage) -> None:
-    strangers = storage.names()
+def _refuse_strangers(storage: Storage, strangers: Sequence[str]) -> None:
     if strangers:
         some = ", ".join(strangers[:3])
         raise DatasetError(

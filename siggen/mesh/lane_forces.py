@@ -1,9 +1,10 @@
 """The pair law at three nodes in lanes: all forces at the nodes of one step.
 
-What `write_node_forces` writes, since places, springs and loads are the same code: with the same bytes, but where pairs
-share a gear body, which both settle within `SMOOTH_CHANGE` from another guess. That stays the way of all steps that
-lanes do not take: these take contacts across the face, while the same pairs are in reach at all nodes and no back flank
-comes near. What passes from one step to the next stands in the table of pairs, so that both ways may follow each other.
+What `write_node_forces` writes, since places, springs and loads are the same code: of two pairs with the same bytes, of
+more with sums in another order; where pairs share a gear body both settle within `SMOOTH_CHANGE` from another guess.
+That stays the way of all steps that lanes do not take: these take contacts across the face, while the same pairs are in
+reach at all nodes and no back flank comes near. What passes from one step to the next stands in the table of pairs, so
+that both ways may follow each other.
 
 A lane is a pair at a node. Two pairs share a register: four lanes of the one with an even number, then of the other,
 the last of each being node 2 once more, left out in the end. The latest two pairs in reach are in the first register,
@@ -86,7 +87,7 @@ APPLIES = next(_row)  # whether lanes can be used at all
 REACHED = next(_row)
 NODES_AT = next(_row)  # on [0, 1]
 WEIGHTS = next(_row)  # of the nodes; none of the lanes that are left out
-PAIR = next(_row)  # number of the pair; this and the next five stay while it is engaged (`pair_places.Engaged`)
+PAIR = next(_row)  # number of the pair; this and the next six stay while it is in reach (`pair_springs.Engaged`)
 TOUCH_AT = next(_row)
 COLUMNS_AT = next(_row)
 MISSED_1_AT = next(_row)
@@ -107,8 +108,8 @@ TURNING = NORMAL + 5
 CARRYING = NORMAL + 6
 ROUGH = NORMAL + 7
 POSITION = NORMAL + 8
-FORCE = NORMAL + 9  # of coupled pairs, while they are solved for; this and the next
-PENETRATION = NORMAL + 10
+FORCE = NORMAL + 9  # of the spring alone
+PENETRATION = NORMAL + 10  # and steps of Newton's method on coupled pairs, while NORMAL holds their penetration
 ROWS = NORMAL + 11
 LATEST, COUNT, LATEST_SLOT = range(3)
 """Lanes of the row REACHED: number of the latest pair in reach, how many are, and the slot of the latest."""
@@ -189,7 +190,7 @@ def place_lanes(law: PairLaw, pitches: Lanes, approach: Lanes, table: FloatArray
     return depth
 
 
-NOT_HERE = -1000
+NOT_HERE = -(2**62)
 """Returned where lanes do not take a step, and nothing was written that matters."""
 _of_even, _of_odd = shuffle(0, 1, 2, 3, 0, 1, 2, 3), shuffle(4, 5, 6, 7, 4, 5, 6, 7)
 _of_other, _of_halves = shuffle(4, 5, 6, 7, 0, 1, 2, 3), shuffle(0, 0, 0, 0, 4, 4, 4, 4)
@@ -452,7 +453,10 @@ def _others(table: FloatArray, work: int, row: int, latest: int, count: int) -> 
 
 @njit(cache=True, _nrt=False, error_model="numpy", forceinline=True)
 def _solve(table: FloatArray, work: int, field: int, latest: int, count: int) -> None:
-    """Write into PENETRATION what solves the system for a field; its diagonal dominates, so there is no pivoting."""
+    """Write into PENETRATION what solves the system for a field.
+
+    It is a positive definite one whose rows are multiplied by stiffnesses, since the energy is convex: no pivoting.
+    """
     matrix = work + count * count
     right = matrix + count * count
     for i in range(count):

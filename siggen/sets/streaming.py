@@ -12,12 +12,14 @@ from concurrent.futures import Executor
 from contextlib import closing
 from functools import cached_property
 from itertools import count
+from numbers import Integral
 from typing import Any
 
 from siggen.columns.record import ChannelColumn, RecordFailure
+from siggen.dataset.environment import environment
 from siggen.dataset.reading import as_record
 from siggen.dataset.simulated_rows import SimulatedRows
-from siggen.errors import UsageError
+from siggen.errors import EngineError, UsageError
 from siggen.gearbox.design import SetDesign, expect_design
 from siggen.gearbox.plan import record_ids_of
 from siggen.record.compilation import run_part
@@ -39,7 +41,7 @@ class RecordStream:
     Attributes
     ----------
     failures
-        Records that could not be simulated since the stream was made; the stream goes on behind them.
+        Records that could not be simulated since the stream was made, by their number; the stream goes on behind them.
     """
 
     def __init__(
@@ -48,9 +50,10 @@ class RecordStream:
     ) -> None:  # fmt: skip
         self.design, self.first_gearbox, self.seed, self.mixed = design, first_gearbox, seed, mixed
         self.rank, self.ranks = share
-        self.failures: list[RecordFailure] = []
+        self.failures: dict[int, RecordFailure] = {}
         self._workers = workers_of(executor, workers)
         self._passed = 0
+        self._reader: object = None
 
     @cached_property
     def channels(self) -> tuple[ChannelColumn, ...]:
@@ -62,16 +65,27 @@ class RecordStream:
     def __iter__(self) -> Iterator[dict[str, Any]]:
         """Yield records from the present place on."""
         for records in self.blocks():
+            reader = self._reader
             for record in records[self._passed % len(records) :]:
                 self._passed += 1
                 if record is not None:
                     yield record
+                    if self._reader is not reader:
+                        break
 
     def blocks(self) -> Iterator[list[dict[str, Any] | None]]:
         """Yield the records of so many mixed gearboxes in their order, from the block of the present place on.
 
         What failed is None. A block has passed when the next one is asked for.
+
+        Raises
+        ------
+        UsageError
+            If another loop began, or a place was loaded, since this one did: a stream has one reader.
+        EngineError
+            If no record of a block could be simulated.
         """
+        self._reader = reader = object()
         physics = contents.physics()
         self._compile(physics)
         size = self.mixed * self.design.records_per_specimen
@@ -84,13 +98,20 @@ class RecordStream:
             return len(made) < self.mixed + OPEN_PER_WORKER * self._workers.count
 
         tasks = (self._record_ids(number) for number in count(first))
-        with closing(results(self._workers, physics.simulation(self.design), tasks, room=room)) as answers:
+        ahead = 0 if self._workers.name == "serial" else self.mixed
+        simulation = physics.simulation(self.design)
+        with closing(results(self._workers, simulation, tasks, room=room, ahead=ahead)) as answers:
             while True:
                 wanted = range(block * self.mixed, (block + 1) * self.mixed)
                 while not all(number in made for number in wanted):
                     number, rows = next(answers)
                     made[first + number] = rows
                 yield self._mixed(block, [made.pop(number) for number in wanted])
+                if self._reader is not reader:
+                    raise UsageError(
+                        "the stream: received another loop or another place while this loop ran; allowed: one loop at "
+                        "a time. Make a second stream for a second reader"
+                    )
                 block += 1
                 self._passed = max(self._passed, block * size)
 
@@ -104,8 +125,10 @@ class RecordStream:
         Raises
         ------
         UsageError
-            If that stream had another configuration, gearboxes, seed or share.
+            If that stream had another configuration, version of siggen, gearboxes, seed or share.
         """
+        if not isinstance(state, Mapping):
+            raise UsageError(f"state: received {state!r}; allowed: what state_dict returned")
         facts = self._facts()
         differing = [f"{name} {state.get(name)!r} instead of {facts[name]!r}" for name in facts
                      if state.get(name) != facts[name]]  # fmt: skip
@@ -116,11 +139,12 @@ class RecordStream:
                 f"the place belongs to another stream: it has {what}. Make the stream with the same configuration and "
                 "arguments, or begin anew"
             )
-        self._passed = passed
+        self._passed, self._reader = passed, None
 
     def _facts(self) -> dict[str, Any]:
         return {
-            "configuration": self.design.identity, "first_gearbox": self.first_gearbox, "seed": self.seed,
+            "configuration": self.design.identity, "sources": environment()["sources"],
+            "first_gearbox": self.first_gearbox, "seed": self.seed,
             "mixed": self.mixed, "rank": self.rank, "ranks": self.ranks,
         }  # fmt: skip
 
@@ -138,11 +162,17 @@ class RecordStream:
         """Return the records of a block of gearboxes in the order that is drawn for it; None for what failed."""
         records: list[dict[str, Any] | None] = []
         for place, rows in enumerate(made):
-            self.failures += rows.failures
+            self.failures |= {failure.record_id: failure for failure in rows.failures}
             row_of = {number: row for row, number in enumerate(rows.rows["record_id"].to_pylist())}
             for record_id in self._record_ids(block * self.mixed + place):
                 row = row_of.get(record_id)
                 records.append(None if row is None else as_record(rows.rows.slice(row, 1)))
+        if not any(records):
+            first = made[0].failures[0]
+            raise EngineError(
+                f"no record of {len(made)} gearboxes, of records from {first.record_id} on, could be simulated; the "
+                f"first is {first.status}: {first.reason}"
+            )
         drawn = generator(self.seed, Stream.STREAM_ORDER, block * self.ranks + self.rank)
         return [records[place] for place in drawn.permutation(len(records))]
 
@@ -196,14 +226,18 @@ def stream(
         raise UsageError("design: received one with `life`; allowed: one with `states`; a life has an order of its own")
     if not design.damaged_states(0):
         raise UsageError("design: received states without damage; a stream is to learn from: give a state `damages`")
-    if workers == 0:
-        raise UsageError("workers: received 0; allowed: 1, 2 and so on, or None; executor='serial' is this process")
     first = design.specimens if first_gearbox is None else first_gearbox
+    wholes: dict[str, int] = {}
     for name, value, least, most in (
         ("first_gearbox", first, 0, design.most_specimens - 1), ("seed", seed, 0, 2**63 - 1),
-        ("mixed", mixed, 1, 10_000), ("ranks", ranks, 1, 100_000),
-        ("rank", rank, 0, ranks - 1 if type(ranks) is int else 0),
+        ("mixed", mixed, 1, 10_000), ("ranks", ranks, 1, 100_000), ("rank", rank, 0, 0),
+        ("workers", 1 if workers is None else workers, 1, 10_000),
     ):  # fmt: skip
-        if type(value) is not int or not least <= value <= most:
-            raise UsageError(f"{name}: received {value!r}; allowed: whole numbers from {least} to {most}")
-    return RecordStream(design, first, seed, mixed, (rank, ranks), workers, executor)
+        allowed = wholes["ranks"] - 1 if name == "rank" else most
+        if isinstance(value, bool) or not isinstance(value, Integral) or not least <= value <= allowed:
+            here = "; executor='serial' simulates in this process" if name == "workers" else ""
+            raise UsageError(f"{name}: received {value!r}; allowed: whole numbers from {least} to {allowed}{here}")
+        wholes[name] = int(value)
+    share = wholes["rank"], wholes["ranks"]
+    count_of = None if workers is None else wholes["workers"]
+    return RecordStream(design, wholes["first_gearbox"], wholes["seed"], wholes["mixed"], share, count_of, executor)

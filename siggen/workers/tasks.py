@@ -60,6 +60,7 @@ def results(
     tasks: Iterable[Task],
     say: Callable[[str], object] | None = None,
     room: Callable[[], bool] = _always,
+    ahead: int = 0,
 ) -> Generator[tuple[int, Result], None, None]:
     """Yield (position of the task, its result) as tasks complete. Closing it stops the work.
 
@@ -74,6 +75,8 @@ def results(
         Called with a sentence on a pool that broke, and on what was under way there.
     room : callable, optional
         Whether another task may begin beside those under way: whoever keeps results bounds how many.
+    ahead : int
+        Least number of tasks that workers are given at a time: they go on while nobody asks for results.
 
     Raises
     ------
@@ -87,7 +90,8 @@ def results(
         try:
             with workers.opened() as pool:
                 begun = chain(list(left.items()), fresh)
-                for position, result in _of_one_pool(pool, workers.count, call, begun, left, under_way, room):
+                most = max(OPEN_PER_WORKER * workers.count if workers.count > 1 else 1, ahead)
+                for position, result in _of_one_pool(pool, most, call, begun, left, under_way, room):
                     breaks = 0
                     yield position, result
             return
@@ -100,14 +104,14 @@ def results(
 
 
 def _of_one_pool(
-    pool: Executor, count: int, call: _TaskCall, begun: Iterator[tuple[int, Any]], left: dict[int, Any],
+    pool: Executor, most: int, call: _TaskCall, begun: Iterator[tuple[int, Any]], left: dict[int, Any],
     under_way: list[Any], room: Callable[[], bool],
 ) -> Iterator[tuple[int, Any]]:  # fmt: skip
     """Yield results until all are there; `left` holds what is begun, `under_way` gets it when a pool breaks."""
     done: SimpleQueue[Future[tuple[str, Any]]] = SimpleQueue()
     opened: dict[Future[tuple[str, Any]], int] = {}
 
-    def submit(most: int) -> None:
+    def submit() -> None:
         while len(opened) < most and (not opened or room()):
             position, task = next(begun, (-1, None))
             if position < 0:
@@ -117,9 +121,8 @@ def _of_one_pool(
             opened[future] = position
             future.add_done_callback(done.put)
 
-    most = OPEN_PER_WORKER * count if count > 1 else 1
     try:
-        submit(most)
+        submit()
         while opened:
             future = done.get()
             position = opened[future]
@@ -130,7 +133,7 @@ def _of_one_pool(
                 raise EngineError(f"{task} raised {content.splitlines()[-1]}\n{content}")
             del left[position]
             yield position, content
-            submit(most)
+            submit()
     except (BrokenExecutor, CancelledError):
         under_way += [left[position] for position in opened.values()]
         raise

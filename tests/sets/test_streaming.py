@@ -16,7 +16,8 @@ import numpy as np
 import pytest
 
 import siggen
-from siggen.errors import UsageError
+from siggen.columns.record import RecordFailure
+from siggen.errors import EngineError, UsageError
 from siggen.gearbox.design import SetDesign
 from siggen.sets.streaming import RecordStream
 from siggen.workers.process_pool import WorkerPool
@@ -103,8 +104,35 @@ def test_ranks_share_the_gearboxes(design: SetDesign) -> None:
     assert shares == [{4, 5}, {6, 7}]
 
 
+def test_a_stream_has_one_reader(design: SetDesign, serial: list[dict[str, Any]]) -> None:
+    stream = siggen.stream(design, mixed=MIXED, executor="serial")
+    with closing(iter(stream)) as first, closing(iter(stream)) as second:
+        begun = [next(first), next(first)]
+        begun.append(next(second))  # which takes the place over
+        with pytest.raises(UsageError, match=r"^the stream: received another loop or another place"):
+            next(first)
+        assert digest([*begun, *islice(second, 5)]) == digest(serial[:8])
+        stream.load_state_dict(stream.state_dict())
+        with pytest.raises(UsageError, match=r"one loop at a time"):
+            next(second)
+
+
+def test_gearboxes_that_all_fail_end_the_stream_with_the_first_reason(
+    design: SetDesign, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def failing(_: SetDesign, ids: range) -> list[RecordFailure]:
+        return [RecordFailure(number, "diverged", "it is only asked for") for number in ids]
+
+    monkeypatch.setattr("siggen.sets.drawn.simulated", failing)
+    stream = siggen.stream(design, mixed=2, executor="serial")
+    with pytest.raises(EngineError, match=r"^no record of 2 gearboxes.*the first is diverged: it is only asked for"):
+        next(iter(stream))
+    assert len(stream.failures) == 2 * design.records_per_specimen
+
+
 REFUSED: Mapping[str, Mapping[str, Any]] = {
-    r"^workers: received 0; allowed: 1, 2 and so on.*executor='serial'": {"workers": 0},
+    r"^workers: received 0; allowed: whole numbers from 1.*executor='serial' simulates in this process": {"workers": 0},
+    r"^workers: received 1.5; allowed: whole numbers from 1": {"workers": 1.5},
     r"^mixed: received 0; allowed: whole numbers from 1": {"mixed": 0},
     r"^rank: received 2; allowed: whole numbers from 0 to 1": {"rank": 2, "ranks": 2},
     r"^first_gearbox: received -1; allowed: whole numbers from 0": {"first_gearbox": -1},

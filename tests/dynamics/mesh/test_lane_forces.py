@@ -50,8 +50,12 @@ WEIGHTS = 0.5 * np.polynomial.legendre.leggauss(NODES)[1]
 COUPLING_M_PER_N = 2e-9
 """That of `quickstart`, 0.44 of a pair's own compliance, which is here the same."""
 HALF_FACE_M = 10e-3
-SETTLED, LIGHT_N = 1e-4, 100.0
-"""Of the force, or of a light one, what pairs that share a gear body may be off by (`SMOOTH_CHANGE`); 8e-5 was seen."""
+SETTLED, LIGHT_N = {2: 1e-4, 3: 3e-4}, 100.0
+"""Of the force, or of a light one, what so many pairs that share a gear body may be off by (`SMOOTH_CHANGE`).
+
+Of two 8e-5 was seen. Of three 2.1e-4 in one of 3,000 steps: a light touch, where the tangent is cut to be convex and
+Newton's method ends linearly; all others are below 1e-4.
+"""
 
 
 def spalled(seed: int, *, tilts: bool, coupled: bool = True, **other: Any) -> PairLaw:
@@ -107,7 +111,7 @@ def helical(*, coupled: bool, tilts: bool) -> PairLaw:
         damping_ratio=0.07,
         friction=composite_friction(asperity_table(mesh(), [0.3e-6, 2e-6], RANGE, 2e4), 0.11),
         contact=contact_table(pair, damage, TEETH, options, POINTS),
-        coupling_m_per_n=body_coupling(pair, TEETH, along) if coupled else None,
+        coupling_m_per_n=body_coupling(pair, StiffnessOptions(coupling="body"), along) if coupled else None,
     )
 
 
@@ -145,7 +149,7 @@ def test_forces_in_lanes_are_those_of_one_pair_after_the_other(name: str) -> Non
         if coupled:
             force = expected[NODE_NORMAL, :NODES]
             off = np.abs(node[NODE_NORMAL, :NODES] - force).max()
-            assert off <= SETTLED * max(np.abs(force).max(), LIGHT_N)
+            assert off <= SETTLED[slots] * max(np.abs(force).max(), LIGHT_N)
         elif slots == 2:  # to the bit
             assert node[rows, :NODES].tobytes() == expected[rows, :NODES].tobytes()
             assert pairs[kept].tobytes() == reference[kept].tobytes()
