@@ -73,9 +73,10 @@ def predict(
     with terminal_stage("reading the models", 1):
         from diagnostics.prediction.prediction import predict_recording
         from diagnostics.prediction.prediction_page import prediction_facts, write_prediction
-        from diagnostics.prediction.released_model import load_model
+        from diagnostics.prediction.released_model import check_judges, load_model
 
         loaded = load_model(model, load_indicators(indicator))
+        check_judges(loaded, referenced=bool(healthy.reference))
     sources = recordings_of(file)
     reading = recording.read(sources[0])
     pair = _teeth(sources[0][0], gears.said(reading), loaded.facts.teeth)

@@ -15,7 +15,7 @@ import numpy as np
 
 from diagnostics.prediction.known_reasons import OwnState, check_units, known_reasons, own_state, reference_reasons
 from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_pieces
-from diagnostics.prediction.released_model import ReleasedModel, check_one_mesh
+from diagnostics.prediction.released_model import ReleasedModel
 from diagnostics.prediction.training_distance import TrainingDistance
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
@@ -149,7 +149,7 @@ def predict_recording(
     Parameters
     ----------
     model : ReleasedModel
-        The models.
+        One that can judge recordings (`check_judges`).
     recording : MeasuredRecording
         With the model's channels.
     teeth : (int, int)
@@ -162,15 +162,12 @@ def predict_recording(
     Raises
     ------
     UsageError
-        If a channel is in another unit than in training, pulses cannot be found, references were given to a model
-        without the variant, or one is the recording itself.
+        If a channel is in another unit than in training, pulses cannot be found, or a reference is the recording
+        itself.
     """
-    check_one_mesh(model)
     for one in (recording, *references):
         check_units(model.facts, one)
-    if references:
-        _check_variant(model)
-        _check_references(recording, references)
+    _check_references(recording, references)
     facts, source = model.facts, recording
     recording = at_rate(recording, facts.fs_hz)
     train = pair_train(teeth, facts.names[0])
@@ -220,15 +217,6 @@ def _direction_reasons(own: OwnState | None, named: str) -> list[str]:
 
 def _undefined_note(count: int) -> str:
     return f"{count} indicators are undefined here: the classifier uses their training medians" if count else ""
-
-
-def _check_variant(model: ReleasedModel) -> None:
-    if model.referenced_classifier is None:
-        raise UsageError(
-            f"{model.folder}: was trained without the healthy-referenced variant, since its set had no second healthy "
-            "record per gearbox; leave --reference out, or train on a set with a second healthy state (as "
-            "configs/bench.yaml), repeat or operating point"
-        )
 
 
 def _check_references(recording: MeasuredRecording, references: tuple[MeasuredRecording, ...]) -> None:

@@ -150,13 +150,15 @@ def written_model(folder: Path, own: Sequence[OwnIndicator] | None) -> ReleasedM
     )
 
 
-def check_one_mesh(model: ReleasedModel) -> None:
-    """Check that the classifiers take the features of one mesh alone, whose teeth are all that a recording tells.
+def check_judges(model: ReleasedModel, *, referenced: bool) -> None:
+    """Check that a model can judge recordings, beside healthy ones where `referenced`, before one of them is read.
+
+    Its classifiers take the features of one mesh alone, whose teeth are all that a recording tells.
 
     Raises
     ------
     UsageError
-        Naming the further meshes, or the members of planetary sets.
+        Naming the further meshes, the members of planetary sets, or the variant that was not trained.
     """
     first, *behind = model.facts.names
     if first.planetary or behind:
@@ -165,6 +167,12 @@ def check_one_mesh(model: ReleasedModel) -> None:
         raise UsageError(
             f"{model.folder}: was trained on {what} {', '.join(parts)}; a recording is judged by the teeth of one "
             "pair. Train on a set of pairs, or judge sets like that with `siggen-diagnostics report SET --test OTHER`."
+        )
+    if referenced and model.referenced_classifier is None:
+        raise UsageError(
+            f"{model.folder}: was trained without the healthy-referenced variant, since its set had no second healthy "
+            "record per gearbox; leave --reference out, or train on a set with a second healthy state (as "
+            "configs/bench.yaml), repeat or operating point"
         )
 
 
