@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from contextlib import contextmanager
+from functools import partial
 from multiprocessing import get_context
+from typing import Any
 
 from siggen.child_environment import SAFE_PATH, child_environment
 from siggen.errors import EngineError, counted
@@ -31,3 +33,26 @@ def process_pool(workers: int, initializer: Callable[[], object] | None = None) 
             f"one of {counted(workers, 'process', 'processes')} was ended from outside, most often since memory ran "
             "out; nothing was kept of its work, and the same command begins again"
         ) from error
+
+
+@contextmanager
+def second_process(*, worth: bool, first: Callable[[], object]) -> Iterator[Callable[..., Callable[[], Any]]]:
+    """Give `begin(function, *arguments)`, whose result is called for later: computed meanwhile by another process.
+
+    Parameters
+    ----------
+    worth : bool
+        Whether there is one; without it results are computed here, when they are called for.
+    first : callable
+        What the other process does at once, such as importing what it will need.
+    """
+    if not worth:
+        yield partial
+        return
+    with process_pool(1) as pool:
+        pool.submit(first)
+
+        def begin(function: Callable[..., Any], *arguments: Any) -> Callable[[], Any]:
+            return pool.submit(function, *arguments).result
+
+        yield begin

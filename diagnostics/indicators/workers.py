@@ -14,8 +14,8 @@ from diagnostics.base.process_pool import process_pool
 from diagnostics.records.recording import Recording
 
 CHUNK_RECORDS = 8
-WORTH_A_PROCESS = 200
-"""Records that take longer than a process takes to begin."""
+WORTH_A_PROCESS = 50
+"""Records of a second or two take longer than a process takes to begin."""
 Result = TypeVar("Result")
 
 

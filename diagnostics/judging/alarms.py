@@ -317,30 +317,34 @@ class Detectors:
 
 
 @single_thread()
-def judged_detectors(matrix: FeatureMatrix, training: Training | None, seed: int) -> Detectors:
-    """Judge all detectors of a set.
+def judged_detectors(matrix: FeatureMatrix, seed: int) -> Detectors:
+    """Judge all detectors of a set that learn on its indicators.
 
     Parameters
     ----------
     matrix : FeatureMatrix
         All records of the one table of the set.
-    training : Training, optional
-        Its networks are judged too.
     seed : int
         Of folds and resampled gearboxes.
     """
     differences, kept = healthy_referenced(matrix)
     alone = _cross_fitted(matrix, seed, referenced=False)
-    referenced = _cross_fitted(differences, seed, referenced=True)
-    if training is not None:
-        test = training.split.test
-        alone |= _network(training.judged, NETWORK, matrix.rows(test), training, seed)
-        if training.referenced:
-            rows = matrix.rows(test & training.referenced.kept)
-            referenced |= _network(training.referenced.judged, NETWORK_REFERENCED, rows, training, seed)
+    referenced = _cross_fitted(differences, seed, referenced=True) if kept.any() else {}
     healthy = matrix.labels["fault"] == HEALTHY
     gearboxes = tuple(int(np.unique(matrix.groups[side]).size) for side in (healthy, ~healthy))
-    return Detectors(alone, referenced if kept.any() else {}, (gearboxes[0], gearboxes[1]))
+    return Detectors(alone, referenced, (gearboxes[0], gearboxes[1]))
+
+
+def with_networks(detectors: Detectors, matrix: FeatureMatrix, training: Training, seed: int) -> Detectors:
+    """Return the detectors with the networks of a training beside them, which are judged on its test records."""
+    test, beside = training.split.test, training.referenced
+    alone = detectors.alone | _network(training.judged, NETWORK, matrix.rows(test), training, seed)
+    referenced = detectors.referenced
+    if beside:
+        referenced = referenced | _network(
+            beside.judged, NETWORK_REFERENCED, matrix.rows(test & beside.kept), training, seed
+        )
+    return replace(detectors, alone=alone, referenced=referenced)
 
 
 def evaluate(

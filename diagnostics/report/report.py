@@ -13,6 +13,7 @@ import numpy as np
 import pyarrow as pa
 
 from diagnostics.base.extras import missing_packages, require_packages
+from diagnostics.base.process_pool import second_process
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.single_thread import single_thread
 from diagnostics.explore.look import Look
@@ -20,9 +21,9 @@ from diagnostics.explore.set_page import LIMIT, LookOptions, set_look
 from diagnostics.indicators.classifier_table import feature_matrix, table_settings, write_table
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.own_indicator import OwnIndicator
-from diagnostics.indicators.ranking_table import ranking_table
+from diagnostics.indicators.ranking_table import IndicatorTable, ranking_table
 from diagnostics.indicators.table import RecordTable
-from diagnostics.judging.alarms import Detectors, judged_detectors
+from diagnostics.judging.alarms import Detectors, judged_detectors, with_networks
 from diagnostics.judging.judgement import TITLES
 from diagnostics.judging.of_split import NetworkOptions, Training, train_models, training_metrics
 from diagnostics.judging.sets import OtherSet, checked_table, measured_table, other_table
@@ -68,7 +69,7 @@ class PageOptions:
     limit, full : int, bool
         Of how many records the page holds the signals, and whether with every sample.
     workers : int
-        Processes that take indicators.
+        Processes that take indicators; with more than one, indicators are judged while classifiers learn.
     """
 
     predictions: Path | None = None
@@ -122,17 +123,24 @@ def write_report(
     require_packages("the report", "matplotlib", "sklearn", "skops")
     network = network or NetworkOptions()
     _scored(dataset, page, None, network)  # what is wrong with predictions is said before minutes have passed
-    records = measured_table(dataset, stage, own=own, workers=page.workers)
-    table = checked_table(records, dataset)
-    second = other_table(other, stage, own) if other is not None else None
-    matrix = feature_matrix(table, set_classes(dataset, network.classes))
-    judged = _evaluated(records, dataset, seed, page, stage)
+    with second_process(worth=page.workers > 1, first=_nothing) as begin:
+        records = measured_table(dataset, stage, own=own, workers=page.workers)
+        table = checked_table(records, dataset)
+        second = other_table(other, stage, own) if other is not None else None
+        matrix = with_kinds(feature_matrix(table, set_classes(dataset, network.classes)), dataset)
+        ranked = ranking_table(records, dataset, states=page.states, leave_out=True)
+        evaluation = begin(_evaluated, ranked, AssessmentSettings(seed=seed))
+        on_indicators = begin(judged_detectors, matrix, seed)
+        training, notes = _trained(dataset, table, folder / "models", seed, network, second, stage)
+        with stage("evaluation", 2) as advance:
+            judged = evaluation()
+            advance()
+            detectors = on_indicators()
+            advance()
+    if training is not None:
+        detectors = with_networks(detectors, matrix, training, seed)
     known = set(matrix.names)
     found = by_strength(result.separability for result in judged.found if result.column in known)
-    training, notes = _trained(dataset, table, folder / "models", seed, network, second, stage)
-    with stage("detectors", 1) as advance:
-        detectors = judged_detectors(with_kinds(matrix, dataset), training, seed)
-        advance()
     classes = ordered_states(matrix.labels)
     with stage("figures", 1) as advance, styled():
         drawing = draw(dataset, matrix, classes, training)
@@ -164,10 +172,14 @@ def write_report(
     return path
 
 
-def _evaluated(records: RecordTable, dataset: Dataset, seed: int, page: PageOptions, stage: Stage) -> Evaluated:
-    """Return how every feature separates damage; records that cannot be used were refused before."""
-    table = ranking_table(records, dataset, states=page.states, leave_out=True)
-    return evaluated(table, AssessmentSettings(seed=seed), stage)
+def _nothing() -> None:
+    """Take no time behind the import of this module, which another process does with it."""
+
+
+@single_thread()
+def _evaluated(table: IndicatorTable, settings: AssessmentSettings) -> Evaluated:
+    """Return how every feature separates damage."""
+    return evaluated(table, settings)
 
 
 def _opening(

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import os
 
 import pytest
 
-from diagnostics.base.process_pool import process_pool
+from diagnostics.base.process_pool import process_pool, second_process
 from siggen.errors import EngineError
 
 
@@ -16,3 +17,13 @@ def test_a_killed_process_is_said_in_words() -> None:
         process_pool(1) as pool,
     ):
         pool.submit(os.abort).result()
+
+
+@pytest.mark.parametrize("worth", [False, True])
+def test_work_beside_gives_what_it_gives_here_and_its_errors(worth: bool) -> None:
+    with second_process(worth=worth, first=os.getpid) as begin:
+        power, root, process = begin(pow, 2.0, 0.5), begin(math.sqrt, -1.0), begin(os.getpid)
+        assert power() == 2.0**0.5
+        with pytest.raises(ValueError, match="math domain"):
+            root()
+        assert (process() != os.getpid()) is worth

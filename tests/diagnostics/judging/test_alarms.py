@@ -69,7 +69,7 @@ def test_the_best_of_many_columns_of_noise_is_chance_on_gearboxes_that_did_not_c
     matrix = matrix_of(noise(3 * GEARBOXES))
     damaged = matrix.labels["fault"] != "healthy"
     within = np.abs(column_auc(matrix.values, damaged) - 0.5).max()
-    found = judged_detectors(matrix, None, seed=0).alone
+    found = judged_detectors(matrix, seed=0).alone
     assert within > 0.2  # chosen and judged on the same gearboxes, noise looks like a find
     # 24 healthy against 48 damaged: the standard error of an AUC of noise is 0.07
     for family in (INDICATOR, CLASSIFIER, BOOSTED, CHOSEN):
@@ -80,7 +80,7 @@ def test_a_column_that_shows_damage_is_chosen_whatever_its_direction() -> None:
     values = noise(3 * GEARBOXES, 60)
     matrix = matrix_of(values)
     values[:, 7] = np.exp(-np.array([STATES.index(name) for name in matrix.labels["state"]]))
-    found = judged_detectors(matrix, None, seed=0)
+    found = judged_detectors(matrix, seed=0)
     single = found.alone[INDICATOR]
     assert single.basis == "noise_7__x"
     assert single.every.value == 1.0
@@ -94,7 +94,7 @@ def test_a_healthy_reference_removes_what_differs_from_gearbox_to_gearbox() -> N
     gearbox = np.exp(np.random.default_rng(5).normal(scale=3.0, size=GEARBOXES))[matrix.labels["specimen_id"]]
     damage = np.array([STATES.index(name) for name in matrix.labels["state"]])
     values[:, 7] = gearbox * np.exp(damage)
-    found = judged_detectors(matrix, None, seed=0)
+    found = judged_detectors(matrix, seed=0)
     beside = found.referenced[INDICATOR]
     assert beside.basis == "noise_7__x"
     assert beside.every.value == 1.0 > found.alone[INDICATOR].every.value
@@ -105,7 +105,7 @@ def test_a_state_of_one_gearbox_has_no_score_and_the_answer_says_so() -> None:
     matrix = matrix_of(values)
     values[:, 3] = np.exp(-np.array([STATES.index(name) for name in matrix.labels["state"]]))
     kept = matrix.rows((matrix.labels["state"] != "slight") | (matrix.labels["specimen_id"] == 5))
-    found = judged_detectors(kept, None, seed=0)
+    found = judged_detectors(kept, seed=0)
     slight = found.alone[CHOSEN].numbers()["states"]["slight"]
     assert slight["auc"]["value"] is slight["share_of_alarms"] is None
     answer = first_answer(found).replace("\xa0", " ")
@@ -122,10 +122,10 @@ def test_a_gearbox_is_in_one_fold_and_a_column_with_a_gap_is_not_taken() -> None
     matrix = matrix_of(values)
     values[:, 1] = [STATES.index(name) for name in matrix.labels["state"]]
     values[0, 1] = np.nan
-    found = judged_detectors(matrix, None, seed=0).alone
+    found = judged_detectors(matrix, seed=0).alone
     assert found[INDICATOR].basis == "noise_0__x"
     values[1, 0] = np.nan
-    assert INDICATOR not in judged_detectors(matrix, None, seed=0).alone
+    assert INDICATOR not in judged_detectors(matrix, seed=0).alone
 
 
 class Watching:
@@ -172,7 +172,7 @@ def test_any_classifier_is_judged_as_those_of_a_report_are() -> None:
     values = noise(4 * GEARBOXES, 30)
     matrix = matrix_of(values, healthy_records=2)
     values[:, 7] *= np.exp(np.array([STATES.index(name) for name in matrix.labels["state"]]))
-    known, own = judged_detectors(matrix, None, seed=0), LogisticBaseline((0.01,))
+    known, own = judged_detectors(matrix, seed=0), LogisticBaseline((0.01,))
     found = evaluate(own, matrix)
     assert found.numbers()["states"] == known.alone[CLASSIFIER].numbers()["states"]
     assert not hasattr(own, "classes_")  # copies were fitted

@@ -194,10 +194,13 @@ def test_a_page_names_what_to_cite_and_no_place_on_the_machine_that_made_it(fold
 
 
 @pytest.mark.slow  # trains everything twice
-def test_the_same_input_gives_the_same_page(make_dataset: Callable[..., Any], tmp_path: Path) -> None:
+def test_one_process_and_several_give_the_same_page(make_dataset: Callable[..., Any], tmp_path: Path) -> None:
     small = make_dataset(("train",) * 3 + ("validation",) + ("test",) * 2)
-    pages = [write_report(small, tmp_path / name, 0, network=NetworkOptions(cnn=False)).read_bytes() for name in "ab"]
-    assert pages[0] == pages[1]
+    pages = [
+        write_report(small, tmp_path / str(k), 0, network=NetworkOptions(cnn=False), page=PageOptions(workers=k))
+        for k in (1, 2)
+    ]
+    assert pages[0].read_bytes() == pages[1].read_bytes()
 
 
 @pytest.mark.slow  # trains everything once more, a network too
