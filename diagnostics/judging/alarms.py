@@ -147,6 +147,30 @@ class JudgedDetector:
         """States that are told from healthy, by their size."""
         return tuple(sorted(filter(self.tells, self.states), key=lambda state: self.states[state].area_mm2))
 
+    @property
+    def kinds(self) -> dict[str, list[str]]:
+        """States of every kind of damage."""
+        kinds: dict[str, list[str]] = {}
+        for name, found in self.states.items():
+            kinds.setdefault(found.kind, []).append(name)
+        return kinds
+
+    @property
+    def unjudged(self) -> list[str]:
+        """States without a score: they have records of a single gearbox."""
+        return [name for name, found in self.states.items() if not np.isfinite(found.auc.value)]
+
+    @property
+    def below_chance(self) -> dict[str, Interval]:
+        """AUC with limits wholly below chance, of all damage together and of states."""
+        asked = {"all damage together": self.every, **{name: found.auc for name, found in self.states.items()}}
+        return {name: auc for name, auc in asked.items() if auc.high < CHANCE}
+
+    @property
+    def within_sham(self) -> list[str]:
+        """States that are found no better than a sham may be."""
+        return [name for name, found in self.states.items() if self.sham and found.auc.value <= self.sham.high]
+
     def __str__(self) -> str:
         """Return AUC and alarms by state, as text."""
         head = f"{self.title}: {self.records} records of {self.specimens} gearboxes; limits of 95 % over gearboxes"

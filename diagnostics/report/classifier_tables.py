@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 import textwrap
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from diagnostics.judging.alarms import Detectors, FoundSize, JudgedDetector
-from diagnostics.judging.judgement import RMS_ALONE, TITLES, Judged
+from diagnostics.judging.judgement import BOOSTING, RMS_ALONE, TITLES, Judged
 from diagnostics.judging.nested_folds import KNOWN_ACCEPTED, Nested, Stranger
 from diagnostics.judging.of_split import Referenced, Training
 from diagnostics.page.blocks import Block, Cell, Paragraph, TableBlock
@@ -22,16 +22,12 @@ from diagnostics.page.tables import interval_cell, linked_cell, records_link
 from diagnostics.page.wording import (
     capitalised,
     counted,
-    decimal,
     joined,
-    percent,
-    percent_limits,
     rounded,
-    signed,
-    signed_limits,
 )
 from diagnostics.records.record_classes import STATE
 from diagnostics.report.indicators import in_a_sentence
+from diagnostics.report.sentences import CLASSIFIERS
 from diagnostics.scoring.score import Scores
 from diagnostics.statistics.evaluation import FEWEST_THAT_AGREE, Interval, IntervalScores
 
@@ -65,10 +61,7 @@ def confusion_table(
         ]
         for row, true in enumerate(classes)
     ]
-    caption = (
-        f"{capitalised(title)}: true {kind} in rows, named {kind} in columns; {records}, and their "
-        f"share of the true {kind}.{' A count leads to its records.' if linked else ''}"
-    )
+    caption = CLASSIFIERS.confusion(title, kind, records, linked)
     return TableBlock([f"True {kind}", *classes], rows, caption=caption)
 
 
@@ -134,14 +127,8 @@ def nested_blocks(found: Nested | None, kind: str = STATE) -> list[Block]:
     """Return the blocks; nothing where the set has too few gearboxes for folds."""
     if found is None:
         return []
-    area, scores = found.scores.macro_auroc, found.scores
-    sentence = (
-        f"Judged on all {counted(scores.specimens, 'gearbox')} by {found.folds} nested folds, logistic "
-        f"regression on indicators reaches a macro-AUROC of {decimal(area.value)} ({decimal(area.low)} to "
-        f"{decimal(area.high)})."
-    )
-    matrix = confusion_table(scores, "Nested folds over all gearboxes", "records of all gearboxes", kind=kind)
-    return [Paragraph(sentence), matrix, *([_strangers(found.strangers)] if found.strangers else [])]
+    matrix = confusion_table(found.scores, "Nested folds over all gearboxes", "records of all gearboxes", kind=kind)
+    return [Paragraph(CLASSIFIERS.nested(found)), matrix, *([_strangers(found.strangers)] if found.strangers else [])]
 
 
 def _strangers(found: tuple[Stranger, ...]) -> TableBlock:
@@ -154,13 +141,10 @@ def _strangers(found: tuple[Stranger, ...]) -> TableBlock:
         ]
         for one in found
     ]
-    caption = (
-        "Each class left out of training in turn, and its records judged. A record is something else where the largest "
-        f"probability is below what {KNOWN_ACCEPTED:.0%} of known records exceed. The last column has the names most "
-        "often given instead."
-    )
     return TableBlock(
-        ["Class that training lacks", "Records", "Called something else", "Called"], rows, caption=caption
+        ["Class that training lacks", "Records", "Called something else", "Called"],
+        rows,
+        caption=CLASSIFIERS.strangers(KNOWN_ACCEPTED),
     )
 
 
@@ -182,35 +166,23 @@ def your_scores(scores: Scores | None) -> list[Block]:
         for row in scores.rows
     ]
     head = ["Task", "Records", "Whose", "Score", "Chance", f"{capitalised(first)} minus this", "Better"]
-    text = (
-        f"Your predictions were judged on {counted(scores.records, 'record')} of "
-        f"{counted(scores.gearboxes, 'gearbox')} of the split {scores.split}, beside the classifiers of this "
-        "report. Differences are paired on the same resampled gearboxes, with 95 % limits."
-    )
     return [
-        Paragraph(text),
+        Paragraph(CLASSIFIERS.yours(scores)),
         TableBlock(head, rows, caption="Scores of the tasks that the predictions answer.", sortable=True),
     ]
 
 
-CAPTION = (
-    "Detectors that give one alarm for all damage. Indicator and classifiers are judged on all gearboxes, each fold by "
-    "what was chosen or trained on the others; the network on the test gearboxes. Where folds differ in which of them "
-    "is best, a row of its own has the choice that the other gearboxes make. Alarms: share of the records of "
-    "a state above the threshold that 5 % of the healthy records exceed. Last columns: damaged area from which 90 % "
-    "give an alarm. Limits of 95 % come from resampled gearboxes."
-)
-SHAM_CAPTION = " Sham: healthy records whose damage was drawn with nothing removed; an AUC above chance is a leak."
-
-
 def detection_blocks(training: Training) -> list[Block]:
     """Return the tables of detection, on the test specimens and on another set, with what they mean."""
-    blocks: list[Block] = [Paragraph(text) for text in (*class_sentences(training), *balance_sentences(training))]
+    merged = {name: states for name, states in training.split.members.items() if len(states) > 1}
+    texts = [CLASSIFIERS.merged(name, states) for name, states in merged.items()]
+    texts += [] if training.judged[0].scores.balanced else [CLASSIFIERS.unequal(training)]
+    blocks: list[Block] = [Paragraph(text) for text in texts]
     shown = tuple(found for found in training.judged if found.detection)
     if not shown:
         return blocks
     blocks += [Paragraph(text) for text in gain_sentences(training)]
-    blocks.append(detection_table(shown, f"Damaged or not: {reading(training)}"))
+    blocks.append(detection_table(shown, CLASSIFIERS.damaged_or_not(training.split.healthy)))
     other = tuple(found for found in training.other if found.detection)
     if other:
         blocks.append(
@@ -221,41 +193,6 @@ def detection_blocks(training: Training) -> list[Block]:
     return blocks
 
 
-def class_sentences(training: Training) -> list[str]:
-    """Say which states are one class; nothing where every state is a class of its own."""
-    merged = {name: states for name, states in training.split.members.items() if len(states) > 1}
-    return [
-        f"The class {name} holds the records of {', '.join(states)}. No damage distinguishes these states, so no "
-        "classifier has to."
-        for name, states in merged.items()
-    ]
-
-
-def balance_sentences(training: Training) -> list[str]:
-    """Give balanced accuracies where classes are unequal; nothing where they are equal."""
-    first = training.judged[0].scores
-    if first.balanced:
-        return []
-    parts = [
-        f"{TITLES[found.name]} {percent(found.scores.balanced_accuracy.value)} "
-        f"({percent_limits(found.scores.balanced_accuracy)})"
-        for found in training.judged
-    ]
-    return [
-        f"The classes have unequal numbers of records. Always naming the most frequent class gives an accuracy of "
-        f"{percent(first.guess)}. The balanced accuracy, a mean over the classes, is: {joined(parts)}. Guessing gives "
-        f"{percent(1 / len(first.classes))} of it."
-    ]
-
-
-def reading(training: Training) -> str:
-    """Say how the table is to be read."""
-    return (
-        f"AUROC of 1 − p({training.split.healthy}) on the test specimens. One alarm covers all kinds of damage. "
-        "Chance is 0.5. The 95 % limits come from resampled specimens."
-    )
-
-
 def gain_sentences(training: Training) -> list[str]:
     """Say what the best detector gains over the level alone, paired; nothing where there is no interval."""
     pairs = [(pair, pair.detection) for pair in training.comparisons if pair.second == RMS_ALONE and pair.detection]
@@ -263,10 +200,7 @@ def gain_sentences(training: Training) -> list[str]:
     if not defined:
         return []
     best, gain = max(defined, key=lambda entry: entry[1].value)
-    return [
-        f"{capitalised(TITLES[best.first])} has the largest gain in detection over RMS alone: {signed(gain.value)} of "
-        f"AUROC ({signed_limits(gain)}, paired over the specimens)."
-    ]
+    return [CLASSIFIERS.detection_gain(best.first, gain)]
 
 
 def detection_table(found: tuple[Judged, ...], caption: str) -> TableBlock:
@@ -302,12 +236,12 @@ def detector_table(found: Detectors) -> TableBlock:
         *(f"Nine of ten, {kind} [mm²]" for kind in kinds),
     ]
     rows = [_row(detector, states, kinds, shams=shams) for detector in every]
-    return TableBlock(head, rows, caption=CAPTION + (SHAM_CAPTION if shams else ""), sortable=True)
+    return TableBlock(head, rows, caption=CLASSIFIERS.detectors(shams), sortable=True)
 
 
 def _row(detector: JudgedDetector, states: list[str], kinds: list[str], *, shams: bool) -> list[Cell]:
     beside = "beside a healthy record" if detector.referenced and "beside" not in detector.title else ""
-    basis = in_a_sentence(detector.basis, detector.gears) if detector.basis else picked(detector.picks)
+    basis = in_a_sentence(detector.basis, detector.gears) if detector.basis else CLASSIFIERS.picked(detector.picks)
     small = ", ".join(part for part in (basis, beside) if part)
     none = Cell("–", value=math.nan)
     shown = {"indicator": detector.basis} if detector.basis else {}
@@ -327,15 +261,6 @@ def _row(detector: JudgedDetector, states: list[str], kinds: list[str], *, shams
         *(behind(_alarms(detector, name), name) for name in states),
         *(_size_cell(detector.sizes.get(kind)) for kind in kinds),
     ]
-
-
-def picked(picks: tuple[tuple[str, int], ...]) -> str:
-    """Return what was chosen for how many groups of gearboxes, the most frequent first; nothing without a choice."""
-    groups = sum(count for _, count in picks)
-    said = [
-        f"{name} for {count}{f' of {groups} groups' if not place else ''}" for place, (name, count) in enumerate(picks)
-    ]
-    return joined(said) if said else ""
 
 
 def _alarms(detector: JudgedDetector, name: str) -> Cell:
@@ -374,11 +299,7 @@ def comparison_table(training: Training) -> TableBlock:
         for pair in training.comparisons
     ]
     head = ["Paired difference", "Macro-AUROC", "Accuracy", "Interval excludes 0"]
-    caption = (
-        "Paired differences on the same resampled specimens, with 95 % limits. Where the limits of macro-AUROC include "
-        "0, the set does not show which classifier is better. There is no correction for many pairs: about one pair in "
-        f"twenty excludes 0 even where no pair differs. The last column needs {FEWEST_THAT_AGREE} test gearboxes."
-    )
+    caption = CLASSIFIERS.differences(FEWEST_THAT_AGREE)
     return TableBlock(head, rows, caption=caption, sortable=True)
 
 
@@ -394,11 +315,7 @@ def other_set_table(training: Training) -> TableBlock:
     own = {found.name: found for found in training.judged}
     rows = [_other_row(found, own[found.name]) for found in training.other]
     head = ["Classifier", "Macro-AUROC there", "Macro-AUROC here", "Accuracy there", "Accuracy here"]
-    there = training.other[0].scores
-    caption = (
-        f"Scores on the other set, {training.other_name}: {counted(there.records, 'record')} of "
-        f"{counted(there.specimens, 'specimen')}. No classifier was trained on it."
-    )
+    caption = CLASSIFIERS.other_set(training.other_name, training.other[0].scores)
     return TableBlock([*head, "Calibration error there"], rows, caption=caption, sortable=True)
 
 
@@ -413,11 +330,7 @@ def referenced_table(found: Referenced) -> TableBlock:
         ]
         for judged in found.judged
     ]
-    caption = (
-        "Alone and beside a healthy record of the same gearbox, on the "
-        f"{counted(found.judged[0].scores.records, 'test record')} that have one, with 95 % limits. "
-        "A healthy record is never its own reference."
-    )
+    caption = CLASSIFIERS.referenced(found.judged[0].scores.records)
     head = ["Classifier", "Macro-AUROC [-]", "Accuracy [-]", "Damaged or not, AUROC [-]"]
     return TableBlock(head, rows, caption=caption, sortable=True)
 
@@ -435,10 +348,7 @@ def referenced_pairs_table(found: Referenced) -> TableBlock:
         for pair in found.comparisons
     ]
     head = ["Paired difference", "Macro-AUROC", "Damaged or not", "Interval excludes 0"]
-    caption = (
-        "What a healthy record of the same gearbox is worth: paired differences on the same resampled specimens, with "
-        "95 % limits. The last column is of macro-AUROC."
-    )
+    caption = CLASSIFIERS.reference_worth()
     return TableBlock(head, rows, caption=caption, sortable=True)
 
 
@@ -453,3 +363,54 @@ def score_blocks(training: Training) -> list[Block]:
     if training.referenced:
         blocks += [referenced_table(training.referenced), referenced_pairs_table(training.referenced)]
     return [*blocks, other_set_table(training)] if training.other else blocks
+
+
+def score_table(training: Training) -> TableBlock:
+    """Return accuracy and macro-AUROC of every classifier with intervals, and its permutation control."""
+    rows = []
+    for judged in training.judged:
+        permuted = float(judged.permuted_auroc.mean()) if judged.permuted_auroc.size else math.nan
+        rows.append(
+            [
+                Cell(TITLES[judged.name], _details(judged.name, judged.details)),
+                interval_cell(judged.scores.accuracy),
+                interval_cell(judged.scores.macro_auroc),
+                Cell(f"{permuted:.2f}" if math.isfinite(permuted) else "–", value=permuted),
+            ]
+        )
+    caption = CLASSIFIERS.score_table(training.judged[0].scores.specimens)
+    head = ["Classifier", "Accuracy [-]", "Macro-AUROC [-]", "Permuted labels [-]"]
+    return TableBlock(head, rows, caption=caption, sortable=True)
+
+
+def calibration_table(training: Training) -> TableBlock:
+    """Return what the probabilities of every classifier are worth without and with its temperature."""
+    rows = [
+        [
+            Cell(TITLES[judged.name]),
+            Cell(f"{found.temperature:.2f}", value=found.temperature),
+            *(interval_cell(each) for each in (found.brier_before, found.brier, found.before, found.after)),
+            Cell(f"{found.honest:.2f}", value=found.honest),
+        ]
+        for judged in training.judged
+        for found in (judged.calibration,)
+    ]
+    scores = ("Brier score", "Calibration error")
+    head = [
+        *("Classifier", "T [-]"),
+        *(f"{score}, {which} T [-]" for score in scores for which in ("without", "with")),
+        "Calibration error if true [-]",
+    ]
+    caption = CLASSIFIERS.calibration(len(training.judged[0].scores.classes))
+    return TableBlock(head, rows, caption=caption, sortable=True)
+
+
+def _details(name: str, details: dict[str, Any]) -> str:
+    if "strength" in details:
+        return f"{counted(details['features'], 'feature')}, {strength_text(name, details['strength'])}"
+    return f"averaged revolutions, epoch {details['best_epoch']} of {details['epochs']}"
+
+
+def strength_text(name: str, strength: float) -> str:
+    """Return what was chosen on validation specimens."""
+    return f"{strength:g} rounds" if name == BOOSTING else f"C = {strength:g}"

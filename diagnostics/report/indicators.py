@@ -20,9 +20,10 @@ from diagnostics.indicators.ranking_table import IndicatorTable
 from diagnostics.indicators.registry import ALL, IndicatorColumn, column_title, indicator_columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page.blocks import Block, Cell, FigureBlock, FigureGrid, Paragraph, RecordLinks, TableBlock
+from diagnostics.page.sentences import Sentences
 from diagnostics.page.style import new_figure, state_ticks
 from diagnostics.page.tables import indicator_links, interval_cell, linked_cell
-from diagnostics.page.wording import counted, limits, percent
+from diagnostics.page.wording import percent
 from diagnostics.records.channel_quantities import ShownQuantity
 from diagnostics.records.gear_train import GearNames
 from diagnostics.records.state_classes import HEALTHY, damage_kinds, ordered_states
@@ -214,14 +215,19 @@ WITH_HISTORY = ("na4_", "nb4_")
 def indicator_findings(found: Sequence[IndicatorResult], states: tuple[str, ...], specimens: int) -> list[str]:
     """Return four findings: best in each design, hardest and easiest state, what survives, the smallest size found."""
     if not states:
-        return ["The set has no damaged state, so no separation can be judged. The tables give the indicators."]
+        return [FINDINGS.no_damage()]
     if specimens < FEWEST_SPECIMENS:
-        whose, those = ("a single specimen", "it") if specimens == 1 else (f"{specimens} specimens", "them")
-        return [
-            f"No best indicator is named, because the set has {whose}. The numbers below describe {those} and say "
-            f"nothing about others. At least {FEWEST_SPECIMENS} specimens are needed."
-        ]
-    return [*_best(found, states), *_by_state(found, states), *_survivors(found, specimens), *_smallest(found)]
+        return [FINDINGS.few(specimens, FEWEST_SPECIMENS)]
+    told = (_best(found, states), _by_state(found, states), _survivors(found, specimens), _smallest(found))
+    return [text for text in told if text]
+
+
+def hardest_sentence(evaluated: Evaluated) -> str:
+    """Say which state single indicators find worst, of one state how well it is found; nothing without a state."""
+    found, states = evaluated.found, evaluated.records.states
+    if not states or _specimens(evaluated.table) < FEWEST_SPECIMENS:
+        return ""
+    return _by_state(found, states) or _best(found, states)
 
 
 def single_records(found: Sequence[IndicatorResult]) -> list[IndicatorResult]:
@@ -229,26 +235,11 @@ def single_records(found: Sequence[IndicatorResult]) -> list[IndicatorResult]:
     return [result for result in found if not result.indicator.startswith(WITH_HISTORY)]
 
 
-def _best(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list[str]:
-    single = [r for r in single_records(found) if math.isfinite(r.score_others.value)]
-    if not single:
-        return ["No indicator can be judged between specimens: values or healthy records are missing."]
-    other = max(single, key=lambda r: r.score_others.value)
-    what = "AUC" if len(states) == 1 else "mean AUC over the states"
-    text = (
-        f"The indicator {in_a_sentence(other.column, other.gears)} separates best between different specimens, with "
-        f"{'an' if len(states) == 1 else 'a'} {what} of {other.score_others.value:.2f} ({limits(other.score_others)}). "
-        "Only indicators of single records are compared here."
-    )
-    paired = [r for r in single if math.isfinite(r.score_same.value)]
-    if not paired:
-        return [text]
-    same = max(paired, key=lambda r: r.score_same.value)
-    who = "It is also" if same is other else f"The indicator {in_a_sentence(same.column, same.gears)} is"
-    return [
-        f"{text} {who} the best on the same specimen before and after damage: it moves in its "
-        f"direction in {percent(same.score_same.value)} of the pairs."
-    ]
+def _best(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
+    single = [result for result in single_records(found) if math.isfinite(result.score_others.value)]
+    paired = [result for result in single if math.isfinite(result.score_same.value)]
+    other = max(single, key=lambda result: result.score_others.value, default=None)
+    return FINDINGS.best(other, max(paired, key=lambda result: result.score_same.value, default=None), states)
 
 
 def best_by_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> dict[str, tuple[float, str]]:
@@ -265,74 +256,46 @@ def best_by_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> 
     return best
 
 
-def _by_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> list[str]:
+def _by_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
+    """Name the hardest and the easiest of several states."""
     best = best_by_state(found, states)
-    if not best:
-        return []
-    if len(best) == 1:
-        return []  # the sentence before has said it
+    if len(best) < 2:
+        return ""  # the sentence before has said it
     hardest, easiest = (chosen(best, key=lambda state: best[state][0]) for chosen in (min, max))
-    said = {state: in_a_sentence(best[state][1], found[0].gears) for state in (hardest, easiest)}
-    return [
-        f"The state {hardest} is the hardest to find: its best single indicator, {said[hardest]}, "
-        f"reaches an AUC of {best[hardest][0]:.2f}. The state {easiest} is the easiest: "
-        f"{said[easiest]} reaches {best[easiest][0]:.2f}. These values are "
-        f"optimistic, because each is the best of many."
-    ]
+    return FINDINGS.by_state((hardest, *best[hardest]), (easiest, *best[easiest]), found[0].gears)
 
 
-def _survivors(found: Sequence[IndicatorResult], specimens: int) -> list[str]:
+def _survivors(found: Sequence[IndicatorResult], specimens: int) -> str:
     others, same = ([r for entry in found for r in getattr(entry, design).values()] for design in ("others", "same"))
     tested = [sum(math.isfinite(r.p_value) for r in results) for results in (others, same)]
-    if not any(tested):
-        return ["No difference could be tested: a test needs three specimens with healthy and damaged records."]
-    kept = [sum(r.holm < SIGNIFICANT for r in results) for results in (others, same)]
-    mild = sum(r.false_discovery < SIGNIFICANT for r in same)
-    text = (
-        f"After Holm's correction at {SIGNIFICANT:g}, {kept[0]} of {counted(tested[0], 'comparison')} between "
-        f"different specimens {_is(kept[0])} significant, and {kept[1]} of {tested[1]} on the same specimen. A "
-        f"comparison is one indicator, channel and state. On the same specimen, {mild} {_is(mild)} below a false "
-        "discovery rate of 5\N{NO-BREAK SPACE}%."
+    return FINDINGS.survivors(
+        tested,
+        kept=[sum(r.holm < SIGNIFICANT for r in results) for results in (others, same)],
+        mild=sum(r.false_discovery < SIGNIFICANT for r in same),
+        level=SIGNIFICANT,
+        specimens=specimens,
+        least_p=smallest_paired_p(specimens),
+        needed=math.ceil(1.0 + math.log2(max(tested[1], 1) / SIGNIFICANT)),
     )
-    if smallest_paired_p(specimens) * tested[1] <= SIGNIFICANT:
-        return [text]
-    needed = math.ceil(1.0 + math.log2(tested[1] / SIGNIFICANT))
-    least = f"{smallest_paired_p(specimens):.2g}"
-    return [
-        f"{text} With {counted(specimens, 'specimen')} the paired test cannot give less than p = {least}. "
-        f"At least {needed} specimens are needed before any of {counted(tested[1], 'comparison')} can pass Holm's "
-        "correction."
-    ]
 
 
-def _is(number: int) -> str:
-    return "is" if number == 1 else "are"
-
-
-def _smallest(found: Sequence[IndicatorResult]) -> list[str]:
+def _smallest(found: Sequence[IndicatorResult]) -> str:
     name = "others_area_mm2_a90"
     judged = [r for r in single_records(found) if name in r.detectable and not math.isnan(r.detectable[name].value)]
     reached = [r for r in judged if math.isfinite(r.detectable[name].value)]
-    if not judged:
-        return ["The smallest damage that is found is not known: there are too few healthy or damaged records."]
-    if not reached:
-        return [
-            "No single indicator finds 90\N{NO-BREAK SPACE}% of the damage of any size. This is between different "
-            "specimens, at the chosen rate of false alarms."
-        ]
-    best = min(reached, key=lambda r: (r.detectable[name].value, -r.score_others.value))
-    size = best.detectable[name]
-    at_most = "at most " if size.value <= best.smallest_size["others_area_mm2"] * (1 + 1e-9) else ""
-    return [
-        f"The indicator {in_a_sentence(best.column, best.gears)} finds the smallest damaged area: "
-        f"{at_most}{size.value:.3g}\N{NO-BREAK SPACE}mm² ({size_text(size.low)} to {size_text(size.high)}) "
-        f"with 90\N{NO-BREAK SPACE}% probability."
-    ]
+    best = min(reached, key=lambda r: (r.detectable[name].value, -r.score_others.value), default=None)
+    size, least = (best.detectable[name], best.smallest_size["others_area_mm2"]) if best else (None, None)
+    return FINDINGS.smallest(judged, best, size, least)
 
 
 def size_text(size: float) -> str:
     """Return a size, or the sign for one that is not reached."""
     return f"{size:.3g}" if math.isfinite(size) else "∞"
+
+
+FINDINGS = Sentences(
+    Path(__file__).with_name("templates") / "findings.txt", in_a_sentence=in_a_sentence, size_text=size_text
+)
 
 
 ARROWS = {1: "rises", -1: "falls"}
@@ -511,17 +474,7 @@ def own_ranks(evaluated: Evaluated) -> list[str]:
     for rank, result in enumerate(evaluated.found if evaluated.records.states else (), start=1):
         if known_column(result.column, result.gears) is None:
             best.setdefault(result.indicator, (rank, result))
-    return [_own_rank(rank, result, len(evaluated.found)) for rank, result in best.values()]
-
-
-def _own_rank(rank: int, own: IndicatorResult, columns: int) -> str:
-    where = f"Your indicator {in_a_sentence(own.column, own.gears)}"
-    if not math.isfinite(own.score_others.value):
-        return f"{where} has no rank: it has no value where gearboxes are compared."
-    return (
-        f"{where} has rank {rank} of {columns} columns between different specimens: AUC over the states "
-        f"{own.score_others.value:.2f} ({limits(own.score_others)}), 0.5 is chance."
-    )
+    return [FINDINGS.own_rank(rank, result, len(evaluated.found)) for rank, result in best.values()]
 
 
 def write_evaluation(dataset: Dataset, found: Evaluated, folder: Path, *, values: bool = False) -> Path:
@@ -568,21 +521,6 @@ def note_counts(table: IndicatorTable) -> list[str]:
 
 MOST_RANKED = 100
 """Columns in the ranking; what is worse separates nothing, and stands in evaluation.csv."""
-OF_THE_FILE = (
-    "Trends, smallest sizes found, effects, causes and p-values of every column are in evaluation.csv beside this page."
-)
-HOW_TO_READ = (
-    'Indicators are judged in two designs. "Other specimens" compares healthy with damaged records of all gearboxes. '
-    'There an AUC of 0.5 is chance, and Cliff\'s delta is 2 AUC − 1. "Same specimen" compares each damaged record with '
-    "the healthy one of the same gearbox, operating point and repeat. It gives the share of pairs in which the "
-    "indicator is higher after damage. A score is the mean over the states, turned so that 1 is perfect. The direction "
-    "of turning comes from the same-specimen design. The 95 % limits come from resampled specimens. The p-values come "
-    "from specimen means: Mann-Whitney for other specimens, Wilcoxon for the same specimen. Holm's method adjusts them "
-    "over all indicators, channels and states. Mann-Whitney is conservative here, because healthy and damaged "
-    "gearboxes are the same. NA4, NA4* and NB4 compare each record with the healthy and milder ones of its own "
-    "specimen, in the true order of severity. They know more than indicators of single records, so the summary leaves "
-    "them out."
-)
 
 
 def figures(evaluated: Evaluated, held: Mapping[str, ShownQuantity]) -> dict[str, tuple[Figure, str]]:
@@ -617,7 +555,7 @@ def ranking_blocks(dataset: Dataset, evaluated: Evaluated) -> list[Block]:
         best_html(best_by_state(found, names), gears),
         ranking_html(found, names),
         separation_html(separation, names, gears),
-        Paragraph(HOW_TO_READ),
+        Paragraph(FINDINGS.how_to_read()),
     ]
 
 
@@ -627,7 +565,7 @@ def detail_blocks(evaluated: Evaluated, pictures: Mapping[str, tuple[bytes, str]
     shown = [name for name in ("severity", "detection") if name in pictures]
     return [
         FigureGrid([FigureBlock(*pictures[name], line) for name in shown]),
-        Paragraph(OF_THE_FILE),
+        Paragraph(FINDINGS.of_the_file()),
         undefined_html(evaluated.found, _left_out(evaluated)),
     ]
 
@@ -652,15 +590,14 @@ def evaluation_notes(dataset: Dataset, evaluated: Evaluated) -> list[str]:
     """Return what was left out, the kinds of damage, and the settings."""
     table = evaluated.table
     first, *_, last = evaluated.table.matrix.gears[0].gears
-    settings = ", ".join(f"{name} {value}" for name, value in asdict(table.settings).items() if value is not None)
+    turns = [f"{gear} {_range(table.revolutions[:, k])}" for k, gear in enumerate((first, last))]
+    resamples = evaluated.records.weights.shape[0] - 1
     return [
         *(f"Left out: {problem}" for problem in problem_lines(table.problems)),
         *note_counts(table),
         *kind_notes(dataset, evaluated.records.states),
-        f"Revolutions averaged: {first} {_range(table.revolutions[:, 0])}, {last} {_range(table.revolutions[:, 1])}. "
-        "Where noise matters, values from averages depend on the number of revolutions (see noise_share).",
-        f"Settings: {settings}; bootstrap seed {evaluated.settings.seed}, "
-        f"{evaluated.records.weights.shape[0] - 1} resamples.",
+        FINDINGS.averaged(*turns),
+        FINDINGS.settings(asdict(table.settings), evaluated.settings.seed, resamples),
     ]
 
 
@@ -669,13 +606,7 @@ def kind_notes(dataset: Dataset, damaged: Sequence[str]) -> list[str]:
     present = set(dataset.labels().column_names)
     table = dataset.labels(columns=[name for name in ("state", "fault", "through_face") if name in present])
     kinds = damage_kinds({name: np.asarray(table.column(name).to_pylist()) for name in table.column_names}, damaged)
-    if len(kinds) < 2:
-        return []
-    listed = "; ".join(f"{kind}: {', '.join(members)}" for kind, members in kinds.items())
-    return [
-        f"The damaged states are of {len(kinds)} kinds ({listed}). Sizes, trends and NA4 are meaningful within one "
-        "kind only. To judge one kind, generate a set with the states of that kind."
-    ]
+    return [FINDINGS.several_kinds(kinds)] if len(kinds) > 1 else []
 
 
 def _range(values: np.ndarray) -> str:

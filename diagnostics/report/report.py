@@ -37,15 +37,15 @@ from diagnostics.prediction.saved_models import save_models
 from diagnostics.records.channel_quantities import channel_quantities
 from diagnostics.records.record_classes import set_classes
 from diagnostics.records.state_classes import SHAM, ordered_states
-from diagnostics.report.answer import answer_figure, answer_sentences, first_answer, first_caption, first_figure
+from diagnostics.report.answer import ANSWERS, answer_figure, answer_sentences, first_figure
 from diagnostics.report.audit_words import audit_beside, audit_sentence
 from diagnostics.report.drawing import draw, example_set, reported_gearboxes
-from diagnostics.report.indicators import Evaluated, evaluated, figures, own_ranks, write_evaluation
+from diagnostics.report.indicators import Evaluated, evaluated, figures, hardest_sentence, own_ranks, write_evaluation
 from diagnostics.report.report_page import ANSWER, CAPTION, FIRST, Reported, report_page
-from diagnostics.report.sentences import summary
+from diagnostics.report.sentences import comparison_sentence, scores_sentence, trust_sentence
 from diagnostics.scoring.score import Scores, score
 from diagnostics.statistics.indicator_statistics import AssessmentSettings, Separability, by_strength
-from diagnostics.training.realism import is_error_free
+from diagnostics.training.realism import is_error_free, meaning_of_scores
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, how_to_install
 from siggen.file_writing import write_file
@@ -152,9 +152,11 @@ def write_report(
     write_evaluation(dataset, judged, folder)
     audit = audit_sentence(dataset, audit_beside(dataset))
     answer = answer_sentences(detectors, error_free=is_error_free(dataset.config))
-    sentences = [*(text for _, text in answer), *summary(dataset.config, training, found), audit]
+    meaning = meaning_of_scores(dataset.config, scored=training is not None)
+    told = [scores_sentence(training), comparison_sentence(training), trust_sentence(training)] if training else []
+    sentences = [*(text for _, text in answer), meaning, *told, hardest_sentence(judged), audit]
     metrics = report_metrics(dataset, table, seed, sentences, training, found, drawing.notes)
-    metrics["headline"] = " ".join([*own_ranks(judged), first_answer(detectors).replace("**", "")])
+    metrics["headline"] = " ".join([*own_ranks(judged), ANSWERS.first_answer(detectors).replace("**", "")])
     metrics["detectors"] = {
         side: {family: detector.numbers() for family, detector in getattr(detectors, side).items()}
         for side in ("alone", "referenced")
@@ -188,7 +190,7 @@ def _opening(
     """Return the figures that open the page: spectra by size, and all detectors."""
     examples = example_set(dataset)
     first, every = first_figure(examples, matrix, classes, detectors.strongest), answer_figure(detectors)
-    shown = {FIRST: (first, first_caption(examples)), ANSWER: (every, CAPTION)}
+    shown = {FIRST: (first, ANSWERS.spectra(examples)), ANSWER: (every, CAPTION)}
     return {name: (figure, text) for name, (figure, text) in shown.items() if figure is not None}
 
 

@@ -35,15 +35,17 @@ from diagnostics.page.blocks import (
 )
 from diagnostics.page.provenance import origin_sentence, provenance
 from diagnostics.page.tables import records_link, state_links
-from diagnostics.page.wording import capitalised, counted
+from diagnostics.page.wording import capitalised
 from diagnostics.records.state_classes import CLASS, ordered_states
-from diagnostics.report.answer import answer_sentences, first_answer, first_certainty
+from diagnostics.report.answer import ANSWERS, answer_sentences
 from diagnostics.report.classifier_tables import (
+    calibration_table,
     confusion_table,
     detection_blocks,
     detector_table,
     nested_blocks,
     score_blocks,
+    score_table,
     your_scores,
 )
 from diagnostics.report.drawing import Drawing
@@ -52,13 +54,14 @@ from diagnostics.report.indicators import (
     definition_html,
     detail_blocks,
     evaluation_notes,
+    hardest_sentence,
     own_ranks,
     ranking_blocks,
 )
 from diagnostics.report.sentences import (
+    CLASSIFIERS,
     area_sentence,
     comparison_sentence,
-    indicator_sentences,
     scores_sentence,
     trust_sentence,
 )
@@ -89,11 +92,7 @@ def wrong_records_table(training: Training, matrix: FeatureMatrix) -> TableBlock
     order = rows[np.argsort(-wrong[:, rows].sum(axis=0), kind="stable")][:MOST_RECORDS]
     true = f"True {training.split.kind}"
     head = ["Record", "Gearbox", "Area [mm²]", true, *(capitalised(TITLES[name]) for name in said)]
-    left = f" The first {MOST_RECORDS} are shown." if rows.size > MOST_RECORDS else ""
-    caption = (
-        f"{counted(int(rows.size), 'test record')} of {labels[CLASS].size} that some classifier names wrongly "
-        f"(shaded), those that most name wrongly first.{left}"
-    )
+    caption = CLASSIFIERS.named_wrongly(int(rows.size), labels[CLASS].size, MOST_RECORDS)
     return TableBlock(head, [_record(labels, row, said) for row in order], caption=caption, sortable=True, tall=True)
 
 
@@ -147,10 +146,10 @@ def _answer(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> Op
     states = next((tuple(one.states) for one in detectors.alone.values()), ())
     figure = next((pictures[name] for name in (FIRST, ANSWER) if name in pictures), None)
     shown = FigureBlock(*figure, RecordLinks("Records", state_links(states))) if figure else None
-    sure = first_certainty(detectors, error_free=is_error_free(reported.dataset.config), audit=reported.audit)
+    sure = ANSWERS.first_certainty(detectors, error_free=is_error_free(reported.dataset.config), audit=reported.audit)
     own = own_ranks(reported.evaluated)
     asked = [("Your indicators" if len(own) > 1 else "Your indicator", " ".join(own))] if own else []
-    said = [*asked, ("What is found", first_answer(detectors)), ("How sure", sure)]
+    said = [*asked, ("What is found", ANSWERS.first_answer(detectors)), ("How sure", sure)]
     return Opening(said, shown)
 
 
@@ -198,8 +197,8 @@ def _limits(reported: Reported) -> list[Block]:
     trained = reported.training
     sentences = [meaning_of_scores(reported.dataset.config, scored=trained is not None)]
     sentences += [trust_sentence(trained)] if trained else []
-    sentences += [*indicator_sentences(reported.found), *area_sentence(reported.found), reported.audit]
-    return [Paragraph(sentence) for sentence in sentences]
+    sentences += [hardest_sentence(reported.evaluated), area_sentence(reported.found), reported.audit]
+    return [Paragraph(sentence) for sentence in sentences if sentence]
 
 
 def _scores(training: Training | None) -> list[Block]:
@@ -208,8 +207,8 @@ def _scores(training: Training | None) -> list[Block]:
     return [
         Paragraph(scores_sentence(training)),
         Paragraph(comparison_sentence(training)),
-        tables.score_table(training),
-        tables.calibration_table(training),
+        score_table(training),
+        calibration_table(training),
         *detection_blocks(training),
         *score_blocks(training),
         *nested_blocks(training.nested, training.split.kind),

@@ -22,6 +22,7 @@ SHOWS = {
     "diagnostics.page.style": "ticks of a figure, as matplotlib writes them",
     "diagnostics.page.blocks": "the name of a heading for links",
     "diagnostics.page.template": "markup",
+    "diagnostics.page.sentences": "lines of a template, and the space before a unit",
     "diagnostics.page.live": "data inside a script",
     "diagnostics.page.security_policy": "line ends of a script, as browsers hash it",
     "diagnostics.report.report": "a sentence without its markup",

@@ -14,7 +14,7 @@ from sklearn.svm import LinearSVC
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.judging.alarms import BOOSTED, CHOSEN, CLASSIFIER, DESIGN, INDICATOR, evaluate, judged_detectors
 from diagnostics.judging.evaluation import Entry, chosen_scores, distance, inner_scores
-from diagnostics.report.answer import first_answer
+from diagnostics.report.answer import ANSWERS
 from diagnostics.statistics.evaluation import column_auc
 from diagnostics.training.classifiers import LogisticBaseline
 from siggen.errors import UsageError
@@ -108,7 +108,7 @@ def test_a_state_of_one_gearbox_has_no_score_and_the_answer_says_so() -> None:
     found = judged_detectors(kept, seed=0)
     slight = found.alone[CHOSEN].numbers()["states"]["slight"]
     assert slight["auc"]["value"] is slight["share_of_alarms"] is None
-    answer = first_answer(found).replace("\xa0", " ")
+    answer = ANSWERS.first_answer(found).replace("\xa0", " ")
     assert "No score for **slight (1 mm²)**: records of a single gearbox; two or more are needed." in answer
     assert "Not told" not in answer
     assert "undefined" not in answer

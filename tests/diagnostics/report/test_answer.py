@@ -15,7 +15,7 @@ from diagnostics.judging.alarms import (
     JudgedDetector,
     StateFound,
 )
-from diagnostics.report.answer import LOOKS, answer_figure, answer_sentences, first_answer, first_certainty
+from diagnostics.report.answer import ANSWERS, LOOKS, answer_figure, answer_sentences
 from diagnostics.statistics.evaluation import Interval
 
 FOUND_MEANS = "Found: the record gives an alarm, as 5 % of healthy records do."
@@ -34,7 +34,7 @@ def detector(auc: float, found_mm2: float, healthy: int = 24) -> JudgedDetector:
 
 
 def screen(found: Detectors) -> str:
-    return first_answer(found).replace("\xa0", " ")
+    return ANSWERS.first_answer(found).replace("\xa0", " ")
 
 
 def with_choice(found: dict[str, JudgedDetector]) -> dict[str, JudgedDetector]:
@@ -142,7 +142,7 @@ def test_the_first_screen_names_damage_size_detector_and_certainty() -> None:
         "**Pitting from 4 mm² on** (2 to beyond the largest) is found in **nine of ten records**. Detector: "
         "**logistic regression**."
     )
-    sure = first_certainty(found, error_free=False, audit="No trap was found. More.").replace("\xa0", " ")
+    sure = ANSWERS.first_certainty(found, error_free=False, audit="No trap was found. More.").replace("\xa0", " ")
     assert sure == (
         "**Each of 24 gearboxes was judged by a model that had learnt from others alone.** Of healthy records 5 % give "
         "a false alarm. All damage together: **AUC 0.80** (95 % limits 0.70 to 0.90; 0.5 is chance, 1 is perfect). No "
@@ -195,10 +195,10 @@ def test_where_nothing_is_told_chance_stands_beside_it_and_less_than_chance_is_c
 
 def test_what_takes_from_the_answer_stands_on_the_first_screen() -> None:
     leaking = Detectors({CHOSEN: replace(detector(0.8, 4.0), sham=Interval(0.7, 0.6, 0.8))}, {})
-    sure = first_certainty(leaking, error_free=True, audit="A trap was found. More.")
+    sure = ANSWERS.first_certainty(leaking, error_free=True, audit="A trap was found. More.")
     assert "**Damage without effect is told too (AUC 0.70)**: slight is not told." in sure
     assert "**The gears have no manufacturing errors**" in sure
     assert sure.endswith("A trap was found (something other than damage that tells the labels).")
-    unasked = first_certainty(leaking, error_free=False, audit="The audit was not run. So it is not known.")
+    unasked = ANSWERS.first_certainty(leaking, error_free=False, audit="The audit was not run. So it is not known.")
     assert unasked.endswith("The audit was not run.")
-    assert first_answer(Detectors({}, {})).startswith("**No answer**")
+    assert ANSWERS.first_answer(Detectors({}, {})).startswith("**No answer**")

@@ -13,13 +13,11 @@ import pytest
 from diagnostics.judging.judgement import VALIDATION_AUROC, Comparison
 from diagnostics.page.wording import counted, joined, percent, signed
 from diagnostics.report.sentences import (
+    CLASSIFIERS,
     area_sentence,
-    certainty_sentence,
     comparison_sentence,
     control_sentence,
-    indicator_sentences,
     scores_sentence,
-    summary,
     trust_sentence,
 )
 from diagnostics.statistics.evaluation import Interval
@@ -27,41 +25,15 @@ from diagnostics.statistics.indicator_statistics import Separability
 
 NAN = math.nan
 UNDEFINED = Interval(NAN, NAN, NAN)
+ASKED = {"rms": 0.5, "fm4": -0.8}
 
 
-def indicator(low: float, high: float, value: float = 0.9, name: str = "fm4__a", state: str = "slight") -> Separability:
-    return Separability(name, {state: Interval(value, low, high)}, Interval(0.5, low, high), 1.0)
-
-
-def test_one_specimen_makes_no_statement_about_others() -> None:
-    sentences = indicator_sentences([indicator(NAN, NAN)])
-    assert len(sentences) == 1
-    assert "too few gearboxes" in sentences[0]
-    assert "nan" not in sentences[0]
-
-
-def test_several_specimens_name_the_hardest_state_with_its_interval() -> None:
-    one, two = indicator(0.8, 0.95), indicator(0.6, 0.8, 0.7, "rms__a", "severe")
-    (first,) = indicator_sentences([one, two])
-    (second,) = area_sentence([one])
-    assert "state severe is the hardest to find. The best of 2\xa0single indicators is RMS at a, which rises" in first
-    assert "optimistic" in first
-    assert "severe from healthy with an AUC of 0.70 (0.60 to 0.80)" in first
-    assert "+0.50" in second
-
-
-def test_an_indicator_that_falls_is_turned_and_a_single_state_is_not_the_hardest() -> None:
-    (sentence,) = indicator_sentences([indicator(0.05, 0.2, 0.1)])
-    assert sentence.startswith(
-        "The damaged state is slight. The best of 1\xa0single indicator is fm4 at a, which falls"
+def test_the_indicator_that_follows_the_damaged_area_best_is_named_and_none_where_none_is_defined() -> None:
+    found = [Separability(f"{name}__a", {}, Interval(at, at - 0.1, at + 0.1), 1.0) for name, at in ASKED.items()]
+    assert area_sentence(found).startswith(
+        "The indicator fm4 at a follows the damaged area best (rank correlation \u2212"
     )
-    assert "an AUC of 0.90 (0.80 to 0.95)" in sentence
-
-
-@pytest.mark.parametrize("found", [[], [Separability("rms__a", {}, UNDEFINED, 1.0)], [indicator(NAN, NAN, NAN)]])
-def test_without_healthy_or_damaged_records_that_is_said(found: list[Separability]) -> None:
-    (sentence,) = indicator_sentences(found)
-    assert "lacks healthy or damaged records" in sentence
+    assert area_sentence([Separability("rms__a", {}, UNDEFINED, 1.0)]) == ""
 
 
 def classifier(
@@ -189,7 +161,7 @@ def test_undefined_scores_are_called_undefined() -> None:
 
 @pytest.mark.parametrize(("specimens", "is_wide"), [(5, True), (40, False)])
 def test_limits_of_few_specimens_are_said_to_be_wide(specimens: int, is_wide: bool) -> None:
-    sentence = certainty_sentence(training(specimens=specimens))
+    sentence = CLASSIFIERS.certainty(specimens)
     assert f"hold for the {specimens} test specimens" in sentence
     assert ("They are wide, because there are few." in sentence) == is_wide
 
@@ -208,16 +180,12 @@ def test_a_control_off_chance_takes_the_scores_back_and_none_says_nothing() -> N
     assert "permuted" not in trust_sentence(off)
 
 
-def test_a_summary_with_scores_has_five_findings_and_one_without_has_two_in_short_sentences() -> None:
-    found = [indicator(0.8, 0.95)]
-    config = {"manufacture": {"accuracy_class": 6}}
-    for sentences, count in ((summary(config, training(), found), 5), (summary(config, None, found), 2)):
-        assert len(sentences) == count
-        for sentence in sentences:
-            assert sentence.endswith(".")
-            # one thought a sentence: none has a semicolon or more than 40 words
-            assert ";" not in sentence
-            assert max(len(part.split()) for part in re.split(r"(?<=[.]) (?=[A-Z1])", sentence)) <= 40
+def test_sentences_are_short_and_hold_one_thought() -> None:
+    for sentence in (scores_sentence(training()), comparison_sentence(training()), trust_sentence(training())):
+        assert sentence.endswith(".")
+        # none has a semicolon or more than 40 words
+        assert ";" not in sentence
+        assert max(len(part.split()) for part in re.split(r"(?<=[.]) (?=[A-Z1])", sentence)) <= 40
 
 
 def test_words_for_numbers() -> None:
