@@ -29,7 +29,7 @@ NOT_RUN = {
     ],
     "docs/start/demo.md": [INSTALLS],
     "docs/start/install.md": [INSTALLS, INSTALLS, INSTALLS, "not run: needs a container tool"],
-    "docs/start/load_a_set.md": ["needs: lightning", "needs: transformers", "needs: accelerate"],
+    "docs/start/load_a_set.md": ["needs: lightning"],
     "docs/understand/baselines.md": ["not run: the same commands run one by one below"],
     "docs/understand/run_to_failure.md": ["not run: minutes", "not run: minutes"],
     "docs/understand/siggen_bench.md": [
