@@ -1,6 +1,6 @@
 """Print docs/reference/commands.md: `python docs/scripts/command_reference.py > docs/reference/commands.md`.
 
-Typer writes the help of every command as Markdown (`typer APP utils docs`); this script puts both programs on a page.
+Typer writes the help of every command as Markdown (`typer APP utils docs`); this script makes tables of both programs.
 """
 
 from __future__ import annotations
@@ -10,63 +10,48 @@ import re
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAMS = {"siggen": "siggen/cli/app.py", "siggen-diagnostics": "diagnostics/cli/app.py"}
 OFTEN = 2
 """An option that so many commands describe in the same words stands once, in a table of its own."""
-ALIKE = ("--set", "CONFIG")
+ALIKE = ("--set", "CONFIG", "DIR", "SET")
 """What commands describe in words of their own that say the same."""
-OPTION = re.compile(r"^\* `([^`]*)`: (.*)\n", re.MULTILINE)
+OPTION = re.compile(r"^\* `([^`]*)`: (.*?)(?:  \[([^\]]*)\])?$", re.MULTILINE)
+COMMAND = re.compile(r"^## `([^`]*)`$\n\n(.*)$", re.MULTILINE)
 NAME = re.compile(r"(?:-\w, )?(--[\w-]+)")
+SENTENCE = re.compile(r"^.*?(?<!s3://\.\.)(?<!\d)[.](?=\s[A-Z]|$)")
 HEAD = """# Commands
 
-This page is printed by `make reference` from the help of the programs. `siggen COMMAND -h` says more, with examples.
+`siggen COMMAND -h` says more: meanings in full, limits of numbers, further examples. `make reference` prints this page.
 
-| exit code | meaning |
-| --- | --- |
-| 0 | done |
-| 1 | unexpected error; run again with `SIGGEN_TRACEBACK=1` for details |
-| 2 | wrong usage or configuration |
-| 3 | some records failed: the set is usable and the manifest names them, unless `--allowed-loss` stopped the run |
-| 4 | `verify` found a difference, `check` a change, `audit --strict` a trap or too few gearboxes |
-| 130 | interrupted; the same command goes on where it stopped |
-
+exit code | meaning
+--- | ---
+0 | done
+1 | unexpected error; run again with `SIGGEN_TRACEBACK=1` for details
+2 | wrong usage or configuration
+3 | some records failed: the set is usable and the manifest names them, unless `--allowed-loss` stopped the run
+4 | `verify` found a difference, `check` a change, `audit --strict` a trap or too few gearboxes
+130 | interrupted; the same command goes on where it stopped
 """
 
 
 def helped(program: str, app: str) -> str:
-    """Return the help of all commands of a program, its headings one level down and its table of commands linked."""
+    """Return the help of all commands of a program as Markdown."""
     command = [sys.executable, "-m", "typer", app, "utils", "docs", "--name", program]
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "TERM": "dumb", "COLUMNS": "80"}
     text = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=True).stdout
-    text = re.sub(r"^\* `--(install-completion|show-completion|help)`.*\n", "", text, flags=re.MULTILINE)
-    text = re.sub(r"\*\*Commands\*\*:\n\n(\* .*\n)+", "", text)  # cut off in the middle of their sentences
-    text = re.sub(r"\*\*Options\*\*:\n\n(?!\*)", "", text)
-    text = re.sub(r"\*\*Usage\*\*:\n\n```console\n\$ .*\n```\n\n", "", text)  # arguments and options are listed
-    text = re.sub(r" ?Exit codes: [^\n]*(\n[^\n]+)*\n", "\n", text)  # the page begins with them
-    text = re.sub(r"^(\* `[^`-][^`]*`: .*)  \[required\]$", r"\1", text, flags=re.MULTILINE)
-    text = re.sub(r"\n{3,}", "\n\n", text.replace(" range>", ">"))
-    text = re.sub(r"\*\*Arguments\*\*:\n\n((?:\* .*\n)+)\n(?:\*\*Options\*\*:\n\n)?", r"\1", text)
-    text = text.replace("**Options**:\n\n", "")
-    text = re.sub(r"^(Example|Begin with): .*\n\n?", "", text, flags=re.MULTILINE)  # the guides run them
-    text = re.sub(r"^(#+ .*\n\n[^\n]+\n)\n(?:(?![#*]).*\n)*", r"\1\n", text, flags=re.MULTILINE)  # a sentence for each
-    text = re.sub(r" <(int|float|str|path|list\[\w+\])>`", "`", text)  # what a value is, its sentence says
-    text = re.sub(r"\[default: (\S+?)(; [^\]]*)?\]", r"[\1\2]", text)
-    text = text.replace("&lt;", "<").replace("&gt;", ">").replace("&#x27;", "'")
-    return re.sub(r"^#", "##", text, flags=re.MULTILINE).strip()
+    text = re.sub(r"^\* `--(install-completion|show-completion|help|version)`.*\n", "", text, flags=re.MULTILINE)
+    text = re.sub(r" <(int|float|str|path|list\[\w+\])( range)?>`", "`", text)  # what a value is, its sentence says
+    return text.replace("&lt;", "<").replace("&gt;", ">").replace("&#x27;", "'")
 
 
-def shared(text: str) -> dict[str, str]:
-    """Return option -> meaning of those that several commands describe alike, the most frequent one of each name."""
-    counted = Counter(OPTION.findall(text))
-    found: dict[str, str] = {}
-    for (option, meaning), count in counted.most_common():
-        if count >= OFTEN and name(option) not in map(name, found):
-            found[option] = meaning
-    return found
+def sentence(meaning: str) -> str:
+    """Return the first sentence of a meaning, in a cell."""
+    found = SENTENCE.search(meaning)
+    return (found[0] if found else meaning).removesuffix(".").replace("|", "\\|")
 
 
 def name(option: str) -> str:
@@ -75,26 +60,56 @@ def name(option: str) -> str:
     return match[1] if match else option.partition(" <")[0]
 
 
-def with_references(text: str, options: Mapping[str, str]) -> str:
-    """Return the help with a line of names in the place of options that stand in the table."""
+def row(option: str, meaning: str, fact: str) -> str:
+    """Return the line of an option; of a default and a range the default alone."""
+    default = re.search(r"default: ([^;]+)", fact)
+    ending = f" ({default[1]})" if default else " (required)" if "required" in fact and option.startswith("-") else ""
+    return f"`{option.replace('|', chr(92) + '|')}` | {sentence(meaning)}{ending}"
 
-    def listed(match: re.Match[str]) -> str:
-        lines = [(found[0], found[1], found[2]) for found in OPTION.finditer(match[0])]
-        is_shared = [options.get(option) == meaning or name(option) in ALIKE for _, option, meaning in lines]
-        own = [line for (line, _, _), known in zip(lines, is_shared, strict=True) if not known]
-        names = [f"`{name(option)}`" for (_, option, _), known in zip(lines, is_shared, strict=True) if known]
-        return "".join(own) + (f"* [Shared](#options-of-several-commands): {', '.join(names)}\n" if names else "")
 
-    return re.sub(r"(?:^\* `[^`]*`: .*\n)+", listed, text, flags=re.MULTILINE)
+def shared(text: str) -> dict[str, tuple[str, str]]:
+    """Return option -> meaning, facts of those that several commands describe alike, the most frequent of each name."""
+    counted = Counter(OPTION.findall(text))
+    found: dict[str, tuple[str, str]] = {}
+    for (option, meaning, fact), count in counted.most_common():
+        if count >= OFTEN and name(option) not in map(name, found):
+            found[option] = meaning, fact
+    return found
+
+
+def commands(text: str, options: Mapping[str, tuple[str, str]]) -> Iterator[str]:
+    """Yield what a page says of every command: a sentence, an example, its options, names of those told elsewhere."""
+    starts = list(COMMAND.finditer(text))
+    for start, following in zip(starts, [*starts[1:], None], strict=True):
+        body = text[start.end() : following.start() if following else None]
+        yield f"### `{start[1]}`\n\n{start[2]}\n"
+        example = re.search(r"^Example: (.*)$", body, re.MULTILINE)
+        if example is not None:
+            yield f"    {example[1]}\n"
+        yield from table(OPTION.findall(body), options)
+
+
+def table(found: Iterable[tuple[str, str, str]], options: Mapping[str, tuple[str, str]]) -> Iterator[str]:
+    """Yield the table of a command's own options, and a line with those that several have."""
+    lines = list(found)
+    known = [options.get(option, ("",))[0] == meaning or name(option) in ALIKE for option, meaning, _ in lines]
+    own = [row(*line) for line, is_known in zip(lines, known, strict=True) if not is_known]
+    if own:
+        yield "\n".join(["option | meaning", "--- | ---", *own, ""])
+    if any(known):
+        names = [f"`{name(line[0])}`" for line, is_known in zip(lines, known, strict=True) if is_known]
+        yield f"[Further](#options-of-several-commands): {', '.join(names)}\n"
 
 
 def page() -> str:
     """Return the page."""
-    text = "\n\n".join(helped(program, app) for program, app in PROGRAMS.items()) + "\n"
-    options = shared(text)
-    rows = [f"| `{option.replace('|', chr(92) + '|')}` | {meaning} |" for option, meaning in sorted(options.items())]
-    table = ["", "## Options of several commands", "", "| option | meaning |", "| --- | --- |", *rows]
-    return HEAD + with_references(text, options) + "\n".join(table)
+    texts = {program: helped(program, app) for program, app in PROGRAMS.items()}
+    options = shared("\n".join(texts.values()))
+    parts = [HEAD]
+    for program, text in texts.items():
+        parts += [f"## `{program}`\n", *commands(text, options)]
+    rows = [row(option, *told) for option, told in sorted(options.items())]
+    return "\n".join([*parts, "## Options of several commands\n", "option | meaning", "--- | ---", *rows])
 
 
 if __name__ == "__main__":
