@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,9 +35,10 @@ from diagnostics.page.blocks import (
     summary_blocks,
 )
 from diagnostics.page.provenance import provenance
+from diagnostics.page.sentences import Sentences
 from diagnostics.page.style import FAULT_COLOURS, HEALTHY_COLOUR, PINION_COLOUR, new_figure
 from diagnostics.page.tables import interval_cell
-from diagnostics.page.wording import capitalised, counted, decimal, joined, limits, percent
+from diagnostics.page.wording import capitalised, counted
 from siggen.dataset.reading import Dataset
 
 if TYPE_CHECKING:
@@ -44,11 +47,19 @@ if TYPE_CHECKING:
 TEACHABLE_AUC, CHANCE_AUC = 0.75, 0.6
 """From the first on a state counts as found; below the second a probe has failed."""
 
-HOW = (
-    "Attackers learn on some gearboxes and are judged on others. Each band, direction and weight is chosen on the "
-    "gearboxes to learn from. Records of one gearbox never stand on both sides. Healthy-referenced attackers see the "
-    "difference from a healthy record of the same gearbox, which is not judged itself. The strongest attacker of a "
-    "state is chosen after the fact, so its AUC is slightly optimistic. The 95 % limits come from resampled gearboxes."
+
+def _strongest(probes: Mapping[str, float]) -> str:
+    return max(probes, key=lambda name: probes[name])
+
+
+SAID = Sentences(
+    Path(__file__).with_name("templates") / "audit.txt",
+    fewest_gearboxes=FEWEST_GEARBOXES,
+    fewest_recordings=FEWEST_RECORDINGS,
+    fewest_specimens=FEWEST_SPECIMENS,
+    strongest=_strongest,
+    teachable=TEACHABLE_AUC,
+    telling_auc=TELLING_AUC,
 )
 
 
@@ -57,42 +68,13 @@ def chance_sentence(audit: Audit) -> str:
     chance = audit.chance
     if chance is None or not math.isfinite(chance.auc):
         return ""
-    strongest = f"By chance the strongest of {counted(chance.attackers, 'attacker')}"
     limits = [law.auc for law in chance.states.values() if math.isfinite(law.auc)]
-    lowest, highest = decimal(chance.auc), decimal(max(limits, default=chance.auc))
-    spread = f"a limit between {lowest} and {highest}, by state," if highest != lowest else f"an AUC of {lowest}"
-    turns = f"{chance.permutations} permutations of the states."
-    if audit.gearboxes_needed is None:
-        return f"{strongest} stays below {spread} in 95 % of {turns}"
-    return (
-        f"{strongest} reaches an AUC of {decimal(chance.auc)} in 5 % of {turns} So no AUC here tells damage from "
-        "chance, and no size of damage is named."
-    )
-
-
-def _auc(value: float) -> str:
-    return f"{value:.2f}" if math.isfinite(value) else "-"
+    return SAID.chance(chance, limits, audit.gearboxes_needed is not None)
 
 
 def verdict_words(audit: Audit, state: str) -> str:
-    """Say by what a state is found best; where it is not found, by which probes it was looked for in vain.
-
-    What an attacker reaches on a sham is no damage.
-    """
-    probes = audit.probes(state)
-    if not probes:
-        return "not judged"
-    best = max(probes, key=lambda name: probes[name])
-    if audit.gearboxes_needed:
-        return f"too few gearboxes to tell ({_auc(probes[best])} by {best})"
-    if audit.on_sham(best) >= probes[best] >= lost_below(audit, state):
-        return f"not shown to be damage: {best} reaches {_auc(probes[best])}, and {_auc(audit.on_sham(best))} on a sham"
-    if probes[best] >= max(TEACHABLE_AUC, lost_below(audit, state)):
-        return f"can be found, best by {best} ({_auc(probes[best])})"
-    tried = joined([f"{name} ({_auc(auc)})" for name, auc in probes.items()])
-    if probes[best] < lost_below(audit, state):
-        return f"not found by {tried}"
-    return f"hard to find, best by {best} ({_auc(probes[best])}) of {tried}"
+    """Say by what a state is found best; where it is not found, by which probes it was looked for in vain."""
+    return SAID.verdict(audit, state, lost_below(audit, state))
 
 
 def lost_below(audit: Audit, state: str) -> float:
@@ -112,7 +94,7 @@ def attack_parts(audit: Audit) -> list[Block]:
     """Return the tables of the attackers; nothing where none could judge."""
     if not audit.states:
         return []
-    return [Paragraph(f"{HOW} {chance_sentence(audit)}".strip()), _strongest_table(audit), _every_table(audit)]
+    return [Paragraph(f"{SAID.how()} {chance_sentence(audit)}".strip()), _strongest_table(audit), _every_table(audit)]
 
 
 def _strongest_table(audit: Audit) -> TableBlock:
@@ -125,13 +107,7 @@ def _strongest_table(audit: Audit) -> TableBlock:
             cells += [Cell(entry.basis), interval_cell(entry.auc)] if entry else [Cell("–"), Cell("–")]
         rows.append([*cells, _chance_cell(audit, state), Cell(verdict_words(audit, state))])
     head = ["State", "Strongest alone", "AUC [-]", "Strongest with a healthy reference", "AUC [-]", "Chance", "Verdict"]
-    caption = (
-        "The strongest attacker by state, with what it chose most often: AUC against healthy, with 95 % limits. "
-        "Chance: share of permutations, the stated states among them, in which the strongest of all attackers but the "
-        "networks, the teeth and the older probes reaches as much. Each state is a test of its own: of twenty "
-        "states without any effect one lies at 0.05 or below."
-    )
-    return TableBlock(head, rows, caption=caption, text=True)
+    return TableBlock(head, rows, caption=SAID.strongest_table(), text=True)
 
 
 def _chance_cell(audit: Audit, state: str) -> Cell:
@@ -158,43 +134,11 @@ def _every_table(audit: Audit) -> TableBlock:
 OUTSIDE = 0.05
 """A recording is outside where fewer gearboxes than this lie as far from their median."""
 
-GAPS_CAPTION = (
-    "Features of windows of one second, the most telling first. The AUC tells measured from synthetic windows."
-)
-PLACE_CAPTION = (
-    "Distance of every recording from the median of the gearboxes' channels, over their spread, and the share of these "
-    "channels that lie as far or farther."
-)
-
 
 def reference_sentences(found: ReferenceComparison) -> list[str]:
     """Say what gives the set away, whether recordings lie within its spread, and how wide that is."""
-    worst = joined([gap.name for gap in found.gaps[:3]])
-    told = (
-        f"{found.telling} of {len(found.gaps)} features alone reach an AUC of {TELLING_AUC:g} or more between the set "
-        f"and {counted(found.recordings, 'recording')}. The most telling are {worst}. {percent(found.inside)} of the "
-        "synthetic values lie inside 95 % of the measured ones."
-    )
-    inside = [place for place in found.places if place.farther >= OUTSIDE]
-    spread = (
-        f"{len(inside)} of {counted(len(found.places), 'recording')} lie within the spread of the synthetic gearboxes. "
-        f"The median distance of a gearbox's channel from their middle is {decimal(found.gearbox_distance)} spreads; "
-        "width alone is no merit."
-    )
-    return [told, _discriminator_sentence(found), spread]
-
-
-def _discriminator_sentence(found: ReferenceComparison) -> str:
-    if math.isfinite(found.discriminator_auc):
-        return (
-            f"All features together tell them with an AUC of {decimal(found.discriminator_auc)} on recordings and "
-            "gearboxes that were not seen."
-        )
-    return (
-        f"All features together were not judged: that needs {FEWEST_RECORDINGS} recordings and {FEWEST_GEARBOXES} "
-        f"gearboxes, and there are {found.recordings} and {found.gearboxes}. Windows of one recording do not count as "
-        "several."
-    )
+    inside = sum(place.farther >= OUTSIDE for place in found.places)
+    return [SAID.telling(found), SAID.together(found), SAID.spread(found, inside)]
 
 
 def reference_parts(found: ReferenceComparison) -> list[Block]:
@@ -215,8 +159,8 @@ def reference_parts(found: ReferenceComparison) -> list[Block]:
     place_head = ["Recording", "Distance [spreads]", "Channels as far [%]", "Windows"]
     return [
         *(Paragraph(text) for text in reference_sentences(found)),
-        TableBlock(place_head, places, caption=PLACE_CAPTION, sortable=True),
-        TableBlock(head, rows, caption=GAPS_CAPTION, sortable=True),
+        TableBlock(place_head, places, caption=SAID.places_table(), sortable=True),
+        TableBlock(head, rows, caption=SAID.gaps_table(), sortable=True),
     ]
 
 
@@ -226,12 +170,12 @@ def _number(value: float) -> Cell:
 
 def audit_summary(audit: Audit) -> list[str]:
     """Return the verdict, what shams tell, its basis, realism if asked for, the hardest state, the size found."""
-    found = [basis_sentence(audit)]
+    found = [SAID.basis(audit)]
     found += [_realism_sentence(audit.realism)] if audit.realism else []
     found += reference_sentences(audit.reference) if audit.reference else []
     return [
         audit.verdict,
-        *first_sentences(audit),
+        *([SAID.first(audit.made_again)] if audit.made_again else []),
         *sham_sentences(audit.shams),
         *found,
         *_hardest_sentence(audit),
@@ -239,49 +183,11 @@ def audit_summary(audit: Audit) -> list[str]:
     ]
 
 
-def first_sentences(audit: Audit) -> list[str]:
-    """Say what comes before any audit of a set that siggen made."""
-    if not audit.made_again:
-        return []
-    return [
-        f"First run `{audit.made_again}`: it simulates records again, so that any change of a file shows. An audit "
-        "sees only the kinds of change that it looks for."
-    ]
-
-
-def basis_sentence(audit: Audit) -> str:
-    """Say how much the audit has judged on, and what so few gearboxes leave open."""
-    text = (
-        f"The audit used {counted(audit.records, 'record')} of {counted(audit.specimens, 'specimen')} (gearboxes) in "
-        f"{counted(audit.channels, 'channel')}."
-    )
-    if audit.specimens >= FEWEST_SPECIMENS:
-        return text
-    return (
-        f"{text} Traps that only appear between gearboxes may not have been found. Detectability needs "
-        f"{FEWEST_SPECIMENS} gearboxes with healthy and {FEWEST_SPECIMENS} with damaged records."
-    )
-
-
 def _realism_sentence(found: Realism) -> str:
-    text = (
-        f"On average over the quantities, {percent(found.mean_inside)} of "
-        f"{counted(found.channel_records, 'healthy channel-record')} lie in the range of measured healthy gearboxes."
+    worst, beside = (
+        min(shares, key=lambda one: one.inside, default=None) for shares in (found.shares, found.background)
     )
-    if found.left_out:
-        words = ", ".join(dict.fromkeys(found.left_out.values()))
-        text += f" Only accelerations were measured there; left out: {words}."
-    if not found.shares:
-        return text
-    worst = min(found.shares, key=lambda share: share.inside)
-    text += f" The share is lowest for {worst.quantity.title}: {percent(worst.inside)}."
-    if not found.background:
-        return text
-    worst = min(found.background, key=lambda share: share.inside)
-    return (
-        f"{text} Of what stands beside the mesh lines, {percent(found.background_inside)} lie in range on average. The "
-        f"share is lowest for {worst.quantity.title}: {percent(worst.inside)}."
-    )
+    return SAID.realism(found, worst, beside)
 
 
 def _hardest_sentence(audit: Audit) -> list[str]:
@@ -290,37 +196,21 @@ def _hardest_sentence(audit: Audit) -> list[str]:
     if not reached:
         return []
     hardest, easiest = (chosen(reached, key=lambda state: reached[state]) for chosen in (min, max))
-    which = f"The state {hardest} is the hardest to find" if len(reached) > 1 else f"The damaged state is {hardest}"
-    text = f"{which}. {_strongest_words(audit, hardest)}"
-    if hardest != easiest:
-        text += f" The state {easiest} is the easiest. {_strongest_words(audit, easiest)}"
     lost = [state for state in reached if reached[state] < lost_below(audit, state) and not audit.gearboxes_needed]
-    failed = f"These failed: {joined(list(audit.probes(lost[0])))}." if lost else ""
-    chance = chance_sentence(audit)
-    return [text, *([chance] if chance else []), *([f"No attacker found {joined(lost)}. {failed}"] if lost else [])]
-
-
-def _strongest_words(audit: Audit, state: str) -> str:
-    """Name the strongest attacker of a state, its interval, its band and how many were tried."""
-    probes = audit.probes(state)
-    name = max(probes, key=lambda probe: probes[probe])
-    tried = f"The strongest of {counted(len(probes), 'attacker')} on gearboxes that were not seen is {name}"
-    entry = next((found for found in audit.detections.get(name, []) if found.state == state), None)
-    if entry is None:
-        return f"{tried}, chosen among {counted(audit.best[state].tried, 'column')}: AUC {decimal(probes[name])}."
-    basis = f", most often {entry.basis} among {counted(entry.tried, 'column')}" if entry.basis else ""
-    return f"{tried}: AUC {decimal(entry.auc.value)} ({limits(entry.auc)}){basis}."
+    told = [SAID.hardest(audit, hardest, easiest, len(reached)), chance_sentence(audit)]
+    told += [SAID.lost(lost, list(audit.probes(lost[0])))] if lost else []
+    return [text for text in told if text]
 
 
 def _size_sentence(detections: dict[str, list[Detectability]]) -> list[str]:
     """Say from which damaged area on damage is found at the lower target, by each variant that reaches it."""
-    target, parts = TARGETS[0], []
-    for name, entries in detections.items():
-        for fault, reached in area_at(entries, target).items():
-            if reached:
-                bound = "at most " if reached.is_upper_bound else ""
-                parts.append(f"{bound}{reached.area_mm2:.2g}\N{NO-BREAK SPACE}mm² of {fault} by {name}")
-    return [f"An AUC of {target:g} is reached from {joined(parts)} (damaged area)."] if parts else []
+    found = [
+        (name, fault, area)
+        for name, entries in detections.items()
+        for fault, area in area_at(entries, TARGETS[0]).items()
+        if area
+    ]
+    return [SAID.sizes(TARGETS[0], found)] if found else []
 
 
 COLUMNS = 2
@@ -328,11 +218,6 @@ BINS = 40
 MARKERS = "osD^v"
 RANGE_COLOUR = "#cfe8d5"
 
-HOW_SINGLE = (
-    "The table has the best of all indicators in all channels, by state. Its AUC is optimistic, because the indicator "
-    'is chosen on the same gearboxes. The AUC "chosen on other gearboxes" is not: half of the gearboxes choose the '
-    "indicator, the other half judge it."
-)
 SIZE_TITLES = {
     "damaged_area_mm2": "Damaged area [mm²]",
     "damaged_area_share": "Share of the flank [-]",
@@ -448,7 +333,7 @@ def audit_page(audit: Audit, dataset: Dataset, drawn: dict[str, bytes]) -> Page:
     parts.append(Heading("Detectability"))
     parts += attack_parts(audit)
     if audit.best:
-        parts += [Paragraph(HOW_SINGLE), _best_table(audit)]
+        parts += [Paragraph(SAID.how_single()), _best_table(audit)]
     parts += [part for name, found in shown_ladders(audit).items() for part in _detection_parts(name, found, audit)]
     if "detectability" in drawn:
         parts.append(FigureGrid([FigureBlock(drawn["detectability"], SIZE_CAPTION)]))
@@ -479,11 +364,6 @@ def _findings_table(audit: Audit) -> TableBlock:
 
 
 def _realism_parts(found: Realism, drawn: dict[str, bytes]) -> list[Block]:
-    text = (
-        f"{percent(found.all_inside)} of {counted(found.channel_records, 'healthy channel-record')} lie inside the "
-        "ranges of all quantities. A share does not prove that the distribution is right: the ranges come from few "
-        "machines. A spectral line counts even where it is only noise (see the traps)."
-    )
     head = ["Quantity", "Range", "5 %", "Median", "95 %", "Inside [%]", "Undefined [%]"]
     spread_head = ["Quantity", "Median [dB]", "Range [dB]"]
     spread = [
@@ -491,7 +371,7 @@ def _realism_parts(found: Realism, drawn: dict[str, bytes]) -> list[Block]:
         for s in found.spreads
     ]
     return [
-        Paragraph(text),
+        Paragraph(SAID.inside_all(found)),
         TableBlock(head, _share_rows(found.shares), caption=RANGE_CAPTION, sortable=True),
         *(
             [TableBlock(head, _share_rows(found.background), caption=BACKGROUND_CAPTION, sortable=True)]

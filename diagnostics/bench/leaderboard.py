@@ -757,7 +757,7 @@ def _caption(question: Question) -> str:
 def _behind(leader: BoardEntry, entry: BoardEntry, part: str) -> Cell:
     if part not in (MEAN, *leader.every):
         return Cell("–")
-    return interval_cell(paired(leader, entry, part), sign=True)
+    return interval_cell(paired(leader, entry, part), "+.2f")
 
 
 def paired(first: BoardEntry, second: BoardEntry, part: str) -> Interval:

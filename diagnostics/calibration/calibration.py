@@ -62,6 +62,11 @@ class ChannelFit:
     sensor: SensorFit
     paths: tuple[PathDraw, ...]
 
+    @property
+    def lines_of_its_own(self) -> tuple[OwnLine, ...]:
+        """All lines that no gear of the simulation makes."""
+        return (*self.own, *(one.line for one in self.stage))
+
 
 @dataclass(frozen=True, slots=True)
 class Calibration:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from diagnostics.audit.envelope import BACKGROUND_QUANTITIES
-from diagnostics.calibration.calibrated_files import TOO_FEW, data_folder, not_identified, stage_sentence
+from diagnostics.calibration.calibrated_files import CALIBRATED, TOO_FEW, data_folder, not_identified
 from diagnostics.calibration.calibration import Calibration
 from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS, HealthyBlocks
 from diagnostics.calibration.interval_coverage import interval_coverage
@@ -40,7 +40,6 @@ from diagnostics.page.blocks import (
 )
 from diagnostics.page.style import FAULT_COLOURS, GEAR_COLOUR, HEALTHY_COLOUR, new_figure, png_bytes, styled
 from diagnostics.page.template import write_page
-from diagnostics.page.wording import counted, decimal, percent
 from diagnostics.statistics.evaluation import Interval
 
 if TYPE_CHECKING:
@@ -114,7 +113,7 @@ def write_calibration_page(
         Heading("Lines, floors, modulation and tails"),
         _level_table(real, before, after),
         Heading("What was fitted"),
-        Paragraph(stage_sentence(found)),
+        Paragraph(CALIBRATED.stage(found)),
         _fitted_table(found),
         Heading("What recordings do not tell"),
         *(Paragraph(f"{text[:1].upper()}{text[1:]}.") for text in not_identified(found)),
@@ -125,20 +124,14 @@ def write_calibration_page(
 
 
 def _sentences(before: Likeness, after: Likeness, found: Calibration, held_out: HealthyBlocks | None) -> list[str]:
-    judged = "Judged on the recordings that it was fitted to, since none was held out (`--held-out`): too kind."
-    if held_out is not None:
-        hold, count = interval_coverage(found, held_out)
-        told = f"{hold} of {count} intervals of 90 % hold their mean." if count else "No interval could be judged."
-        judged = f"Judged on {counted(len(held_out.blocks), 'recording')} held out: {told}"
-    first = (
-        f"The spectrum of the calibrated gearboxes lies {decimal(float(after.distance_db.mean()))} dB from the "
-        f"recordings, that of the rig {decimal(float(before.distance_db.mean()))} dB (rms over twelfths of an octave)."
-    )
-    wide = (
-        f"{percent(after.inside)} of the recordings' values lie within 90 % of the calibrated gearboxes, "
-        f"{percent(before.inside)} within those of the rig. A set that is wide enough holds them; width is no merit."
-    )
-    return [first, judged, wide, "Whether a detector gains by it is another question: see the control in the docs."]
+    others = len(held_out.blocks) if held_out is not None else 0
+    hold, count = interval_coverage(found, held_out) if held_out is not None else (0, 0)
+    return [
+        CALIBRATED.distance(before, after),
+        CALIBRATED.judged(others, hold, count),
+        CALIBRATED.width(before, after),
+        "Whether a detector gains by it is another question: see the control in the docs.",
+    ]
 
 
 def _likeness_table(found: Calibration, before: Likeness, after: Likeness) -> TableBlock:
@@ -157,14 +150,11 @@ def _feature_parts(before: Likeness, after: Likeness) -> list[Block]:
         [Cell(gap.name), *(_number(v) for v in (earlier[gap.name].auc, gap.auc, gap.measured, gap.synthetic))]
         for gap in after.features.gaps[:MOST_FEATURES]
     ]
-    told = (
-        f"{after.features.telling} of {len(after.features.gaps)} features without a level reach an AUC of 0.9 alone "
-        f"between the calibrated gearboxes and the recordings; {before.features.telling} do for the rig. "
-        f"{percent(after.features.inside)} of the calibrated values lie inside 95 % of the recordings', "
-        f"{percent(before.features.inside)} of the rig's."
-    )
     head = ("Feature", "AUC before", "AUC after", "Recordings", "Calibrated")
-    return [Paragraph(told), TableBlock(head, rows, caption="The most telling after calibration.", sortable=True)]
+    return [
+        Paragraph(CALIBRATED.features(before.features, after.features)),
+        TableBlock(head, rows, caption="The most telling after calibration.", sortable=True),
+    ]
 
 
 def _level_table(real: Sample, before: Likeness, after: Likeness) -> TableBlock:

@@ -137,7 +137,7 @@ def _tell(found: Calibration) -> None:
     """Say what was fitted, and to stderr what was not identified."""
     import numpy as np
 
-    from diagnostics.calibration.calibrated_files import TOO_FEW, not_identified, stage_sentence
+    from diagnostics.calibration.calibrated_files import CALIBRATED, TOO_FEW, not_identified
     from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS
     from diagnostics.calibration.path_draws import housing_mass_kg, path_level_doubt
 
@@ -150,7 +150,7 @@ def _tell(found: Calibration) -> None:
     if len(found.blocks.blocks) < FEWEST_RECORDINGS:
         echo(f"recordings: {len(found.blocks.blocks)}; {TOO_FEW}", err=True)
     if found.stage is not None or not found.rig.shows_other_stages:
-        echo(stage_sentence(found))
+        echo(CALIBRATED.stage(found))
     for text in not_identified(found):
         echo(f"not identified: {text}", err=True)
     paths = np.array([draw.accelerance for channel in found.channels for draw in channel.paths])

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from diagnostics.base.extras import require_packages
 from diagnostics.page import wording
+from siggen.printable import markdown
+
+if TYPE_CHECKING:
+    from jinja2 import Template
 
 FILTERS = (
     *(wording.capitalised, wording.counted, wording.decimal, wording.joined, wording.limits, wording.percent),
-    *(wording.percent_limits, wording.rounded, wording.signed, wording.signed_limits),
+    *(markdown, wording.percent_limits, wording.rounded, wording.signed, wording.signed_limits),
 )
 
 
@@ -42,25 +46,34 @@ class Sentences:
 
     @cached_property
     def _macros(self) -> Any:
-        require_packages("a page", "jinja2")
-        from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-        found = Environment(
-            loader=FileSystemLoader(self._template.parent),
-            autoescape=False,  # plain text: pages escape all of it, and so does Markdown (siggen.printable)
-            finalize=lambda value: value.strip(" \n") if isinstance(value, str) else value,
-            undefined=StrictUndefined,
-            trim_blocks=True,
-            lstrip_blocks=True,
-        )
-        found.filters |= {one.__name__: one for one in FILTERS} | {"each": _each, "those": _those}
-        found.tests["finite"] = math.isfinite
-        return found.get_template(self._template.name, globals=self._known).module
+        return _template(self._template, self._known).module
 
     def __getattr__(self, sentence: str) -> Callable[..., str]:
         if sentence.startswith("_"):
             raise AttributeError(sentence)
         return lambda *facts, **named: one_line(getattr(self._macros, sentence)(*facts, **named))
+
+
+def filled(template: Path, **facts: Any) -> str:
+    """Return a template of Markdown or YAML with its facts filled in; `value|form(".2f")` is Python's format."""
+    return f"{_template(template, {}).render(**facts).rstrip()}\n"
+
+
+def _template(path: Path, known: Mapping[str, Any]) -> Template:
+    require_packages("a page", "jinja2")
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    found = Environment(
+        loader=FileSystemLoader(path.parent),
+        autoescape=False,  # no HTML: pages escape all of it, `markdown` what stands in Markdown
+        finalize=lambda value: value.strip(" \n") if isinstance(value, str) else value,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    found.filters |= {one.__name__: one for one in FILTERS} | {"each": _each, "form": format, "those": _those}
+    found.tests["finite"] = math.isfinite
+    return found.get_template(path.name, globals=known)
 
 
 def one_line(text: str) -> str:

@@ -62,9 +62,8 @@ def set_table(labels: dict[str, np.ndarray], classes: tuple[str, ...]) -> TableB
     return TableBlock(["State", *splits], rows, caption="Records by state and split, and gearboxes by split.")
 
 
-def interval_cell(found: Interval, *, sign: bool = False) -> Cell:
-    """Return a value with its limits in small print."""
-    form = "+.2f" if sign else ".2f"
+def interval_cell(found: Interval, form: str = ".2f") -> Cell:
+    """Return a value with its limits in small print; `form` is Python's, such as `+.2f` for differences."""
     if not math.isfinite(found.value):
         return Cell("undefined", value=math.nan)
     limits = "" if math.isnan(found.low) else f"{found.low:{form}} … {found.high:{form}}"

@@ -30,7 +30,7 @@ from diagnostics.page.blocks import (
 )
 from diagnostics.page.style import draw_marks, mark_handles, new_figure, order_words, png_bytes, sideband_places, styled
 from diagnostics.page.template import write_page
-from diagnostics.page.wording import capitalised, counted, joined, percent
+from diagnostics.page.wording import capitalised, counted, percent
 from diagnostics.prediction.known_reasons import OwnState
 from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.prediction import Nearness, Prediction, Vote
@@ -50,11 +50,6 @@ MEANING = (
     "simulated states: it says which of them the recording is most like. It is not the probability that the gear is "
     "damaged."
 )
-
-TITLES = {
-    "healthy_referenced": "differences from the healthy reference",
-    "network": "the 1-D network",
-}
 
 HARMONICS_SHOWN = 4
 ORDERS_SHOWN = 4.5
@@ -163,43 +158,6 @@ def _vote_text(found: Prediction, vote: Vote) -> str:
     return f"{shares}{agree}{right}{' (do not use)' if found.reasons else ''}"
 
 
-def prediction_summary(found: Prediction) -> list[str]:
-    """Return the answer or why there is none, the votes, the distance, and what they rest on."""
-    votes = [
-        f"{found.classes[vote.named]} by {TITLES.get(vote.classifier, vote.classifier)} ({_weight(vote)})"
-        for vote in found.votes
-    ]
-    near = found.nearness
-    side = "beyond" if near.outside else "within"
-    speed = f"{found.pulses.speed_hz:.4g}\N{NO-BREAK SPACE}Hz"
-    if found.reasons:
-        reasons = [f"{capitalised(reason.rstrip('.'))}." for reason in found.reasons]
-        answer = f"The models give no answer for this recording. {' '.join(reasons)}"
-    else:
-        answer = f"The recording is most like the {found.class_kind} {found.state}."
-        if found.contradiction:
-            answer += f" This answer is weak: {found.contradiction}."
-    if (own := found.own_state) is not None:
-        told = "nothing can be said" if own.score is None else f"the machine is {own.verdict}"
-        answer = f"Against its own healthy recordings {told} ({own.reason}). {answer}"
-    shaft = meshes_of(found.train)[0].names.gears[0]
-    withheld = f" Do not use these {found.class_kind}s." if found.reasons else ""
-    return [
-        answer,
-        *([f"The most probable {found.class_kind} is {joined(votes)}.{withheld}"] if votes else []),
-        f"Its distance to the training records is {near.distance:.2f}, {side} the threshold of {near.threshold:.2f}.",
-        f"The models used {counted(len(found.pieces.values), 'piece')} of {found.pieces.revolutions} or more {shaft} "
-        f"revolutions. The {shaft} speed is {speed} ({found.pulses.origin}).",
-    ]
-
-
-def _weight(vote: Vote) -> str:
-    """Return how sure a vote is, how far its pieces agree, and how often its classifier was right."""
-    agree = [] if vote.agreement is None else [f"{percent(vote.agreement)} of the pieces agree"]
-    right = [] if vote.accuracy is None else [f"right in {percent(vote.accuracy.value)} of its test records"]
-    return "; ".join([percent(float(vote.probability.max())), *agree, *right])
-
-
 def model_provenance(facts: ModelFacts) -> str:
     """Return which program made the page, and which set the models were trained on."""
     return (
@@ -278,7 +236,7 @@ def _page(found: Prediction, facts: ModelFacts, indicators: dict[str, float | No
     name = found.recording.path.name
     parts = [
         Heading(f"{name}: {found.state}", 1),
-        *summary_blocks([MEANING, *prediction_summary(found)]),
+        *summary_blocks([f"{capitalised(prediction_headline(found).rstrip('.'))}.", MEANING]),
         TableBlock(("Question", "Answer"), rows, caption="What the models say about this recording.", text=True),
         Heading("Sidebands"),
         FigureGrid(blocks),

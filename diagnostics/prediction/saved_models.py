@@ -19,9 +19,8 @@ from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.registry import indicator_columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.judging.judgement import REFERENCED as REFERENCED_NAME
-from diagnostics.judging.judgement import Judged
 from diagnostics.judging.of_split import Training
-from diagnostics.page.wording import decimal
+from diagnostics.page.sentences import filled
 from diagnostics.prediction.model_facts import FACTS_FILE, MODEL_FILES, REFERENCED, ModelFacts, model_facts, write_facts
 from diagnostics.prediction.noise_floor import floor_features
 from diagnostics.prediction.training_distance import TrainingDistance, calibrated_distance, distance_features
@@ -37,7 +36,6 @@ from diagnostics.training.referenced import healthy_referenced, log_values, refe
 from diagnostics.training.splits import TEST, VALIDATION, SpecimenSplit
 from siggen.dataset.reading import Dataset
 from siggen.file_writing import write_file
-from siggen.printable import markdown
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,45 +157,28 @@ def save_release(training: Training, found: Release, table: pa.Table, folder: Pa
     write_facts(found.facts, found.distance, variant.distance if variant else None, scores, folder)
 
 
-def model_card(training: Training, dataset: Dataset) -> str:
+def model_card(training: Training, found: Release, dataset: Dataset) -> str:
     """Return the card as Markdown.
 
     Parameters
     ----------
     training : Training
         The judged classifiers.
+    found : Release
+        What goes along with them.
     dataset : siggen Dataset
         The set they were trained on.
     """
-    parts = [
-        f"# Gear fault classifiers trained on {markdown(dataset.path.name)}",
-        meaning_of_scores(dataset.config),
-        "## Data",
-        _data(training, dataset),
-        "## Files",
-        _files(training, names_of(dataset)),
-        "## Scores on test specimens",
-        _scores(training),
-        _probabilities(training),
-        "## Limits",
-        "The models were trained on simulated records only. Do not use the scores as an estimate of performance on "
-        "measured records.",
-    ]
-    if training.notes:
-        parts += ["## Notes", "\n".join(f"* {markdown(note)}" for note in training.notes)]
-    return "\n\n".join(parts) + "\n"
-
-
-def _data(training: Training, dataset: Dataset) -> str:
-    count = ", ".join(f"{name} {number}" for name, number in training.specimens.items())
-    channels = ", ".join(f"{markdown(channel.name)} [{markdown(channel.unit)}]" for channel in dataset.channels)
-    return "\n".join(
-        [
-            f"* identity of the set: `{markdown(dataset.manifest['identity'])}`",
-            f"* {markdown(class_text(training.split, dataset))}",
-            f"* specimens: {count} (no specimen is in two splits)",
-            f"* channels: {channels}; {dataset.fs_hz:g} Hz, {dataset.duration_s:g} s",
-        ]
+    return filled(
+        Path(__file__).with_name("templates") / "model_card.md",
+        name=dataset.path.name,
+        meaning=meaning_of_scores(dataset.config),
+        classes=class_text(training.split, dataset),
+        channels=dataset.channels,
+        columns=columns_text(training.classifier.features, names_of(dataset)),
+        training=training,
+        released=found,
+        facts=found.facts,
     )
 
 
@@ -221,103 +202,11 @@ def _faults_text(dataset: Dataset) -> str:
     return f"faults: {held or 'none'}"
 
 
-def _files(training: Training, gears: GearNames) -> str:
-    lines = [
-        f"* `classifier.skops`: logistic regression with ridge penalty on {len(training.classifier.features)} columns. "
-        f"{len(training.classifier.logarithms)} columns are logarithms. Undefined values are replaced by medians, then "
-        f"columns are standardised. C = {training.classifier.strength:g} was chosen by cross-validation over training "
-        "and validation gearboxes. `feature_names.json` lists the columns in order, with the settings of their "
-        f"definitions. Columns: {markdown(columns_text(training.classifier.features, gears))}",
-    ]
-    if training.network:
-        count = len(training.network.channels)
-        lines += [
-            "* `cnn.safetensors`: convolutional 1-D network round the first driver's synchronous average. The input is "
-            f"(batch, {3 * count}, 1024): one averaged revolution of every channel, then their residuals (without "
-            "shaft orders 0 to 2 and mesh harmonics), then these whitened, all with orders up to 511. The function "
-            "`diagnostics.training.average_rows.average_rows` makes it. `predict` uses the network.",
-        ]
-    if training.referenced and len(training.referenced.judged) > 2:
-        lines.append("* The 1-D network beside a healthy record is judged in `metrics.json`; it is not saved.")
-    return "\n".join(lines)
-
-
 def columns_text(columns: Sequence[str], gears: GearNames) -> str:
     """Return the indicators that columns are of, with how many columns each has."""
     known, names = indicator_columns(IndicatorSettings(), gears), (column.partition("__")[0] for column in columns)
     counts = Counter(known[name].entry.name if name in known else name for name in names)
     return ", ".join(f"{name} ({count})" for name, count in counts.items())
-
-
-def _scores(training: Training) -> str:
-    titles = (
-        *("classifier", "accuracy", "balanced accuracy", "macro-AUROC", "detection AUROC"),
-        "macro-AUROC with permuted labels",
-    )
-    head = f"| {' | '.join(titles)} |\n|{'---|' * len(titles)}"
-    first = training.judged[0].scores
-    return "\n".join([head, *(_row(found) for found in training.judged)]) + (
-        "\n\nThe 95 % intervals come from a bootstrap over test specimens. Always naming the most frequent class gives "
-        f"an accuracy of {first.guess:.2f} and a balanced accuracy of {1.0 / len(first.classes):.2f}. Chance is 0.50 "
-        "for both AUROC. Detection is healthy against all damaged records, by 1 - p(healthy)."
-    )
-
-
-def _row(found: Judged) -> str:
-    permuted = decimal(found.permuted_auroc.mean()) if found.permuted_auroc.size else "-"
-    scores = (found.scores.accuracy, found.scores.balanced_accuracy, found.scores.macro_auroc)
-    detected = f"{found.detection.every:.2f}" if found.detection else "-"
-    cells = (found.name, *(f"{score:.2f}" for score in scores), detected, permuted)
-    return f"| {' | '.join(cells)} |"
-
-
-def _probabilities(training: Training) -> str:
-    titles = (
-        *("classifier", "T", "Brier score without T", "Brier score with T"),
-        *("calibration error without T", "calibration error with T", "calibration error if true"),
-    )
-    rows = [
-        " | ".join(
-            [
-                judged.name,
-                f"{found.temperature:.2f}",
-                *(f"{score:.2f}" for score in (found.brier_before, found.brier, found.before, found.after)),
-                f"{found.honest:.2f}",
-            ]
-        )
-        for judged in training.judged
-        for found in (judged.calibration,)
-    ]
-    lines = [f"| {' | '.join(titles)} |", f"|{'---|' * len(titles)}", *(f"| {row} |" for row in rows)]
-    return "\n".join(lines) + (
-        "\n\nThe saved models give probabilities with the temperature T. T comes from validation specimens. It is 1 "
-        "where it does not help validation specimens that are left out of its fit. Chance alone makes the calibration "
-        "error positive. The last column gives its value on these records if the probabilities (with T) were true."
-    )
-
-
-def release_card(found: Release) -> str:
-    """Return the section as Markdown."""
-    facts, distance = found.facts, found.distance
-    teeth = ", ".join(f"{a}/{b}" for a, b in facts.teeth)
-    lines = [
-        "## Use on recordings",
-        f"* digest of the set's manifest (the manifest holds the hash of every file): `{facts.manifest_digest}`",
-        f"* `model.json`: channels ({markdown(', '.join(facts.channels))}), {facts.fs_hz:g} Hz, {teeth} teeth, "
-        f"{facts.speed_range_hz[0]:.3g} to {facts.speed_range_hz[1]:.3g} Hz speed of the first shaft, "
-        f"{facts.torque_range_nm[0]:.3g} to {facts.torque_range_nm[1]:.3g} N m in training and validation. Outside "
-        "these ranges no answer is given. Torque is not checked, because a recording does not contain it.",
-        f"* distance to the training records: the threshold is {distance.threshold:.2f}, from "
-        f"{distance.held_out_specimens} held-out specimens. It refuses {found.outside:.1%} of the test records, "
-        "which are of the same family.",
-    ]
-    if found.referenced:
-        accuracy = found.referenced.scores.accuracy.value
-        lines.append(
-            "* `referenced_classifier.skops`: uses log features minus those of healthy records of the same gearbox in "
-            f"another state, repeat or operating point. Its accuracy is {accuracy:.2f} on test specimens."
-        )
-    return "\n\n".join([lines[0], "\n".join(lines[1:])]) + "\n"
 
 
 def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: Path) -> list[str]:
@@ -346,8 +235,7 @@ def save_models(training: Training, table: pa.Table, dataset: Dataset, folder: P
     write_predictions(_predicted(training, table), identity, folder, training.split.kind)
     released = release(training, table, dataset)
     notes += [released.note] if released.note else []
-    card = f"{model_card(training, dataset)}\n{release_card(released)}"
-    write_file(folder / "model_card.md", card)
+    write_file(folder / "model_card.md", model_card(training, released, dataset))
     save_release(training, released, table, folder)
     return notes
 

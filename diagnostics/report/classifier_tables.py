@@ -160,7 +160,7 @@ def your_scores(scores: Scores | None) -> list[Block]:
             Cell(TITLES.get(row.name, row.name)),
             interval_cell(row.score),
             Cell(f"{row.chance:.2f}", value=row.chance),
-            interval_cell(row.difference, sign=True) if row.difference else Cell("\N{EN DASH}"),
+            interval_cell(row.difference, "+.2f") if row.difference else Cell("\N{EN DASH}"),
             Cell("less" if row.falls else "more"),
         ]
         for row in scores.rows
@@ -292,8 +292,8 @@ def comparison_table(training: Training) -> TableBlock:
     rows = [
         [
             Cell(f"{TITLES[pair.first]} − {TITLES[pair.second]}"),
-            interval_cell(pair.macro_auroc, sign=True),
-            interval_cell(pair.accuracy, sign=True),
+            interval_cell(pair.macro_auroc, "+.2f"),
+            interval_cell(pair.accuracy, "+.2f"),
             Cell(verdict(pair.macro_auroc, specimens)),
         ]
         for pair in training.comparisons
@@ -341,8 +341,8 @@ def referenced_pairs_table(found: Referenced) -> TableBlock:
     rows = [
         [
             Cell(f"{TITLES[pair.first]} − {TITLES[pair.second]}"),
-            interval_cell(pair.macro_auroc, sign=True),
-            interval_cell(pair.detection or UNDEFINED, sign=True),
+            interval_cell(pair.macro_auroc, "+.2f"),
+            interval_cell(pair.detection or UNDEFINED, "+.2f"),
             Cell(verdict(pair.macro_auroc, specimens)),
         ]
         for pair in found.comparisons

@@ -36,12 +36,12 @@ from diagnostics.page.blocks import (
     note_blocks,
 )
 from diagnostics.page.provenance import origin_sentence, provenance
+from diagnostics.page.sentences import Sentences
 from diagnostics.page.style import WIDTH_IN, png_bytes, styled
+from diagnostics.page.tables import interval_cell
 from diagnostics.page.template import write_page
-from diagnostics.page.wording import capitalised, counted
 from diagnostics.scoring.prediction_file import CLASSIFIER, RECORD, SPLIT, write_predictions
 from diagnostics.scoring.remaining_life import COLUMNS
-from diagnostics.statistics.evaluation import Interval
 from diagnostics.statistics.first_detection import IN_A_ROW, QUIET, Watch, rise, watched
 from diagnostics.statistics.life_scores import BINS, QUANTILES, LifeScores, life_scores
 from diagnostics.training.lives import (
@@ -290,10 +290,12 @@ def _pictures(dataset: Dataset, unit: int, gear: str, tooth: int, found: Inspect
     ]
 
 
-CAPTION = (
-    "Pictures: the flank that ends it, with age and damaged share. Middle: what shows damage, over the limit "
-    f"that {QUIET:.0%} of other gearboxes' inspections without a pit stay below; diamonds: detected. Bottom: predicted "
-    "remaining life with its 80 % interval, beside the true one (dashed)."
+LIVES = Sentences(
+    Path(__file__).with_name("templates") / "lives.txt",
+    folds=FOLDS,
+    in_a_row=IN_A_ROW,
+    indicators=INDICATORS,
+    quiet=QUIET,
 )
 
 
@@ -324,16 +326,12 @@ def detection_table(detected: Mapping[str, FailureDetection]) -> TableBlock:
         "Hours left then [h]",
         "Detected before any pit",
     ]
-    caption = (
-        f"First detection in gearboxes that failed, medians. Detected: {IN_A_ROW} inspections in a row above what "
-        f"{QUIET:.0%} of other gearboxes' inspections without a pit stay below; pictures: the first that shows a pit."
-    )
-    return TableBlock(head, rows, caption=caption)
+    return TableBlock(head, rows, caption=LIVES.first_detection())
 
 
 def life_block(unit: UnitLife) -> FigureBlock:
     """Return the figure of a gearbox with its caption."""
-    return FigureBlock(png_bytes(life_figure(unit)), f"Gearbox {unit.specimen}. {CAPTION}")
+    return FigureBlock(png_bytes(life_figure(unit)), f"Gearbox {unit.specimen}. {LIVES.life()}")
 
 
 def _median(value: float) -> Cell:
@@ -372,7 +370,7 @@ def figure_of(dataset: Dataset, table: RecordTable) -> Callable[[int], dict[str,
     def figure(gearbox: int) -> dict[str, str]:
         (life,) = unit_lives(dataset, found, seen, predicted, [gearbox]).values()
         with styled():
-            return {"png": base64.b64encode(png_bytes(life_figure(life))).decode("ascii"), "caption": CAPTION}
+            return {"png": base64.b64encode(png_bytes(life_figure(life))).decode("ascii"), "caption": LIVES.life()}
 
     return figure
 
@@ -391,11 +389,10 @@ def write_life_report(
     stage: Stage = silent_stage,
     *,
     network: bool = True,
-    amount: LookOptions | None = None,
 ) -> Path:
     """Write `report.html`, `metrics.json` and `predictions.parquet`; return the page's path.
 
-    The network is trained where it is wanted and PyTorch is installed. `amount` says how many records the page holds.
+    The network is trained where it is wanted and PyTorch is installed.
 
     Raises
     ------
@@ -417,7 +414,8 @@ def write_life_report(
         for name, values in predicted.items()
     }
     baselines = {name: one.numbers() for name, one in scores.items()}
-    metrics = {"seed": seed, **_facts(found), "baselines": baselines, "leaks": [leak.numbers() for leak in leaks]}
+    facts = _facts(found)
+    metrics = {"seed": seed, **facts, "baselines": baselines, "leaks": [leak.numbers() for leak in leaks]}
     detected = detections(found, seen)
     metrics["first_detection"] = {name: one.numbers() for name, one in detected.items()}
     text = json.dumps(metrics, indent=1, allow_nan=False)
@@ -426,15 +424,22 @@ def write_life_report(
     write_predictions([_predicted_rows(name, found, values) for name, values in predicted.items()], identity, folder)
     page = folder / PAGE
     first, *lives = unit_lives(dataset, found, seen, predicted, shown_gearboxes(found)).values()
-    look = set_look(dataset, amount or LookOptions(), stage, lives_of)
+    look = set_look(dataset, LookOptions(), stage, lives_of)
     parts: list[Block] = [
         *(Heading("Records"), RecordsPlace(), Heading("Remaining life")),
-        *(Paragraph(sentence) for sentence in (*_sentences(found), _verdict(leaks))),
+        *(
+            Paragraph(sentence)
+            for sentence in (
+                LIVES.judged(facts),
+                LIVES.predicted(),
+                LIVES.verdict([leak.clue for leak in leaks if leak.found]),
+            )
+        ),
         *note_blocks([left_out] if left_out else []),
         *(_errors(found, scores), _quantiles(scores), Heading("First detection"), detection_table(detected)),
         *(FigureGrid([life_block(one) for one in lives]), Heading("Leaks"), _leaks(leaks)),
     ]
-    opening = Opening(_answer(found, scores, detected), life_block(first))
+    opening = Opening(_answer(facts, scores, detected), life_block(first))
     write_page(page, _page(dataset, seed, opening, parts, look))
     return page
 
@@ -479,53 +484,25 @@ def _page(dataset: Dataset, seed: int, opening: Opening, parts: Sequence[Block],
 
 
 def _answer(
-    found: Inspections, scores: Mapping[str, LifeScores], detected: Mapping[str, FailureDetection]
+    facts: Mapping[str, object], scores: Mapping[str, LifeScores], detected: Mapping[str, FailureDetection]
 ) -> list[tuple[str, str]]:
     """Say which baseline tells remaining lives best, when damage is seen, and how sure that is."""
-    sensed = {name: one for name, one in scores.items() if name not in KNOWN}
-    best = min(sensed, key=lambda name: sensed[name].mae_h[0].value)
-    error, by_age = sensed[best].mae_h[0], scores[AGE].mae_h[0]
+    sensed = {name: one.mae_h[0] for name, one in scores.items() if name not in KNOWN}
+    best = min(sensed, key=lambda name: sensed[name].value)
     seen = max(detected, key=lambda name: (name != PICTURES, detected[name].detected))
-    watch = detected[seen]
-    facts = _facts(found)
-    return [
-        (
-            "What is found",
-            f"**{capitalised(best)}** tell the remaining life to **{error.value:.0f} h** on average, age alone to "
-            f"{by_age.value:.0f} h; half of the gearboxes ran for {found.median_life_h:.0f} h. **{capitalised(seen)}** "
-            f"show pitting first in {watch.detected} of {watch.gearboxes}, when it covers "
-            f"**{100.0 * watch.share:.2g} % of the worst tooth**.",
-        ),
-        (
-            "How sure",
-            f"Judged on **{facts['gearboxes_judged']} gearboxes that failed**, each by what was trained on others; "
-            f"95 % limits of the error: {error.low:.0f} to {error.high:.0f} h.",
-        ),
-    ]
-
-
-def _sentences(found: Inspections) -> list[str]:
-    facts = _facts(found)
-    judged, taken_out = facts["gearboxes_judged"], facts["gearboxes_suspended"]
-    return [
-        f"Judged are {counted(int(found.rul_h[np.isfinite(found.rul_h)].size), 'inspection')} of {judged} gearboxes "
-        f"that failed. {taken_out} suspended ones have no known remaining life: no error is taken of them, and the "
-        f"law of age knows them as at least as long. Half of the failed ones ran for {found.median_life_h:.3g} h.",
-        f"Every gearbox is predicted by baselines that were trained on others ({FOLDS} folds). Five indicators: "
-        f"{', '.join(INDICATORS)}, of every channel and gear. The last two rows know what no sensor tells.",
-    ]
+    found = LIVES.what_is_found(best, sensed[best], scores[AGE].mae_h[0], seen, detected[seen], facts)
+    return [("What is found", found), ("How sure", LIVES.how_sure(sensed[best], facts))]
 
 
 def _errors(found: Inspections, scores: Mapping[str, LifeScores]) -> TableBlock:
     third = found.median_life_h / BINS
     bins = ("all", f"below {third:.3g} h", f"{third:.3g} to {2 * third:.3g} h", f"from {2 * third:.3g} h")
-    rows = [[Cell(name), *map(_hours, (*one.rmse_h, *one.mae_h))] for name, one in scores.items()]
+    rows = [
+        [Cell(name), *(interval_cell(found, ".1f") for found in (*one.rmse_h, *one.mae_h))]
+        for name, one in scores.items()
+    ]
     head = ["What is known", *(f"{error} [h], {each}" for error in ("RMSE", "MAE") for each in bins)]
-    caption = (
-        "Error of the predicted median, of all inspections and by true remaining life, with 95 % limits from resampled "
-        "gearboxes."
-    )
-    return TableBlock(head, rows, caption=caption)
+    return TableBlock(head, rows, caption=LIVES.errors())
 
 
 def _quantiles(scores: Mapping[str, LifeScores]) -> TableBlock:
@@ -533,7 +510,7 @@ def _quantiles(scores: Mapping[str, LifeScores]) -> TableBlock:
         [
             Cell(name),
             *(Cell(f"{loss:.2f}", value=loss) for loss in one.pinball_h),
-            _hours(one.coverage, ".2f"),
+            interval_cell(one.coverage),
             Cell(f"{one.nasa:.1f}", value=one.nasa),
         ]
         for name, one in scores.items()
@@ -544,21 +521,7 @@ def _quantiles(scores: Mapping[str, LifeScores]) -> TableBlock:
         "Coverage of 80 % intervals [-]",
         "NASA score, mean [-]",
     ]
-    caption = (
-        "Predicted quantiles. NASA score: mean over all inspections of exp(-d/13) - 1 for early and exp(d/10) - 1 for "
-        "late predictions; d in units of median life / 200, and at most 60."
-    )
-    return TableBlock(head, rows, caption=caption)
-
-
-def _verdict(leaks: Sequence[Leak]) -> str:
-    """Return whether the set tells lives by what should tell nothing."""
-    found = [leak.clue for leak in leaks if leak.found]
-    if not found:
-        return (
-            "What should tell nothing (numbers, identities, hours between inspections, bytes) tells no more than age."
-        )
-    return f"A trap: beside age, {' and '.join(found)} tells the remaining life. Scores on this set mean little."
+    return TableBlock(head, rows, caption=LIVES.quantiles())
 
 
 def _leaks(leaks: Sequence[Leak]) -> TableBlock:
@@ -572,17 +535,4 @@ def _leaks(leaks: Sequence[Leak]) -> TableBlock:
         for leak in leaks
     ]
     head = ["Beside age", "RMSE [h]", f"Lower than by age alone ({leaks[0].age_rmse_h:.1f} h) by [h]", "Verdict"]
-    caption = (
-        "What should tell nothing, learned by the same trees as age alone. Where nothing leaks, one report of twenty "
-        "says that something does. Whole histories tell their length by their last inspection: cut them before you "
-        "test."
-    )
-    return TableBlock(head, rows, caption=caption)
-
-
-def _hours(found: Interval, form: str = ".1f") -> Cell:
-    """Return a value with its limits in small print."""
-    if not np.isfinite(found.value):
-        return Cell("none", value=found.value)
-    limits = "" if np.isnan(found.low) else f"{found.low:{form}} … {found.high:{form}}"
-    return Cell(f"{found.value:{form}}", limits, found.value)
+    return TableBlock(head, rows, caption=LIVES.leaks())

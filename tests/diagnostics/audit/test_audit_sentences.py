@@ -38,7 +38,7 @@ def test_the_strongest_attacker_is_named_with_interval_and_number_and_lost_means
     assert "mild is the hardest to find. The strongest of 2\xa0attackers" in found[2]
     assert "is the best single indicator, chosen among 820\xa0columns: AUC 0.51." in found[2]
     assert "is best band: AUC 0.97 (0.92 to 1.02), most often orders 9 to 40 among 300\xa0columns." in found[2]
-    assert "8\xa0attackers stays below an AUC of 0.66 in 95 % of 100 permutations" in found[3]
+    assert "8\xa0attackers stays below an AUC of 0.66 in 95\xa0% of 100 permutations" in found[3]
     assert found[4] == "No attacker found mild. These failed: the best single indicator and indicators."
     # of the attackers alone: linear between the states, 20 (0.5 + 0.5 (0.75 - 0.5) / 0.47)
     assert "0.75 is reached from 15\xa0mm² of spalling by strongest attacker alone" in found[5]

@@ -84,7 +84,7 @@ def test_what_was_fitted_and_what_was_not_is_written_down(calibrated: tuple[Path
     assert "27 teeth on the gear shaft" in said
     assert any("path and source" in text for text in facts["not_identified"])
     assert "path and source" in said
-    assert "intervals of 90 % hold their mean" in said
+    assert "intervals of 90\xa0% hold their mean" in said
     assert "background: null" in mine.read_text()
 
 

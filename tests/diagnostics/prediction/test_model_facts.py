@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ import pytest
 
 from diagnostics.indicators.classifier_table import feature_matrix
 from diagnostics.prediction.model_facts import model_facts
-from diagnostics.prediction.saved_models import release, release_card
+from diagnostics.prediction.saved_models import model_card, release
 from diagnostics.training.splits import specimen_split
 
 
@@ -45,9 +44,8 @@ def test_test_records_bring_no_teeth_and_no_shorter_averages(dataset: Any, featu
     assert facts.fewest_revolutions == 28
 
 
-def test_the_card_says_whose_ranges_they_are(dataset: Any, features: pa.Table) -> None:
-    training: Any = SimpleNamespace(split=specimen_split(feature_matrix(features).labels), referenced=None)
+def test_the_card_says_whose_ranges_they_are(dataset: Any, features: pa.Table, training: Any) -> None:
     found = release(training, features, dataset)
     found = replace(found, facts=replace(found.facts, speed_range_hz=(20.0, 30.0)))
-    card = release_card(found)
+    card = model_card(training, found, dataset)
     assert "20 to 30 Hz speed of the first shaft, 60 to 60 N m in training and validation. Outside these" in card
