@@ -22,32 +22,28 @@ SECTION_KIND = "section (kind: "
 
 HEAD = """# Keys of the YAML file
 
-This page is printed by `make reference` from the JSON Schema that `siggen init` writes. Begin with
-[the twenty keys that matter](twenty_keys.md).
+Begin with [the twenty keys that matter](twenty_keys.md). `make reference` prints this page from the JSON Schema that `siggen init` writes.
 
-* **Number**, or a limit alone, may be a constant, or a range such as `[1, 2]` from which siggen draws once per gearbox
-  ([below](#ranges)).
-* A key of `pinion` or `shafts.driver` stands for that of `gear` or `shafts.driven` too, if that has no line.
-* **extends** names a preset or another file. Mappings are merged key by key, states and sensors by name, all else is
-  replaced. A state or sensor that is null is removed; `others: null` takes over none. The set's own `config.yaml` holds
-  the result.
-* The default stands last, in brackets. A key without brackets is required wherever its section stands.
-* Keys of one meaning share a line; what differs between them is divided by a slash. Sections are not counted.
+* **Number**, or a limit alone, may be a constant or a [range](#ranges) such as `[1, 2]`, drawn once per gearbox.
+* The default stands last, in brackets; without brackets a key is required wherever its section stands.
 * The end of a key is its unit: `_mm`, `_um` (µm), `_deg` and `_gpa` for gears, SI for the rest; `n_s_per_m` is N s/m.
-* `a.b` is key `b` in section `a`; `a[].b` is key `b` of every entry of the list `a`, `a.NAME.b` that of every name. On
-  the command line: `--set a.b=VALUE`, `--set a.0.b=VALUE` for the first entry, `--set states.severe.b=VALUE`.
+* `a.b` is key `b` in section `a`; `a[].b` of every entry of the list `a`, `a.NAME.b` of every name. On the command line: `--set a.b=VALUE`,
+  `--set a.0.b=VALUE` for the first entry, `--set states.severe.b=VALUE`.
+* Keys of one meaning share a line, divided by a slash where they differ. A key of `pinion` or `shafts.driver` stands for that of `gear` or
+  `shafts.driven` too, if that has no line.
+* **extends** names a preset or another file. Mappings are merged key by key, states and sensors by name, all else is replaced. A state or sensor that
+  is null is removed; `others: null` takes over none.
 """
 RANGES_TEXT = """## Ranges
 
-Any Number may be written in one of these forms. Every gearbox draws its own value, except where a key says otherwise.
-Two numbers in a list are always a range. `{each: [1.0, [0.9, 1.1]]}` gives a number or range for each of several
-things, where a key says so; a place `[x, y]` has a number or range for each of its two.
+Every gearbox draws its own value, except where a key says otherwise. `{each: [1.0, [0.9, 1.1]]}` gives a number or range for each of several things,
+where a key says so; a place `[x, y]` has one for each of its two.
 """
 
 CATALOGUES_TEXT = """## Catalogues
 
-A word stands for the numbers of its line. Keys beside it go before them: `{model: laboratory, range_m_s2: 2000}`;
-`background: {like: laboratory, base: null}`. The set's own `config.yaml` holds the numbers.
+A word stands for the numbers of its line. Keys beside it go first: `{model: laboratory, range_m_s2: 2000}`;
+`background: {like: laboratory, base: null}`. The set's own `config.yaml` holds all numbers.
 """
 PLACES_OF_WORDS = {
     "variation": "variation",

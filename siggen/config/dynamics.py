@@ -78,8 +78,8 @@ class MeshSection(Section):
     )
     damage: Literal["all", "geometry"] = Field(
         default="all",
-        description="how damage acts with law: pairs; geometry: lands carry, flanks sink where none is left, "
-        "land beside it is rough, as far as it is wide, up to 0.5 mm; all: geometry, and weaker sections",
+        description="with law: pairs; geometry: lands carry, flanks sink where none is left, land beside it is "
+        "rough, up to its width and 0.5 mm; all: weaker sections too",
     )
     pit_edge_radius_mm: Annotated[Number, Within(least=0, most=1), Usual(0.005, 1)] = Field(
         default=0.1, description="rounding of the edges of damage (law: pairs)"
@@ -116,8 +116,7 @@ class Friction(Section):
     )
     oil_temperature_c: Annotated[Number | None, Within(least=-20, most=150, words=(None,)), Usual(5, 120)] = Field(
         default=None,
-        description="at the inlet of the contact; null: what the losses of each operating point warm the oil to, up to "
-        "90, from where on a cooler holds it",
+        description="at the inlet of the contact; null: what losses warm the oil to, up to 90, where a cooler holds it",
     )
     boundary_friction: Annotated[Number, Within(least=0, most=0.5), Usual(0.02, 0.3)] = Field(
         default=Uniform(low=0.07, high=0.11), description="friction coefficient of asperities, by the oil's additives"
@@ -127,8 +126,7 @@ class Friction(Section):
     )
     pit_roughness_um: Annotated[Number, Within(above=0, most=5), Usual(0.1, 5)] = Field(
         default=2.0,
-        description="rms roughness of a flank in damage and on the land beside it, as far as that is wide, up to "
-        "0.5 mm (mixed_ehl)",
+        description="rms, of a flank in damage and on the land beside it, up to its width and 0.5 mm (mixed_ehl)",
     )
 
 
@@ -176,9 +174,9 @@ MACHINE = "of the machine that drives, or is driven"
 RATED = "rated_torque_nm"
 """Key from which the sizes follow that a file leaves out."""
 RATED_LOAD = (
-    "of the first shaft: masses, inertias, bearings, couplings, and shafts if there are any, follow from it where they "
-    "are not given, by the rules of `siggen init`, and take the place of those of a file that is extended; speed null: "
-    "the highest of the operating points; torque null: their own defaults"
+    "of the first shaft: masses, inertias, bearings, couplings and shafts that this file does not give "
+    "follow from it by the rules of `siggen init`; speed null: the highest operating point; torque null: "
+    "their own defaults"
 )
 RATED_SPEED, SIZING = "rated_speed_hz", "sizing"
 RATED_SPEED_TEXT = AllowedText("a number above 0 up to 1e+05, or null")
@@ -212,8 +210,8 @@ class BearingSection(Section):
     )
     geometry: BallGeometry | None = Field(
         default=None,
-        description="null: the stiffness above (damage is in one of the defaults); given: each of two such ball "
-        "bearings, whose stiffness follows load and clearance",
+        description="null: the stiffness above (damage is in one of the defaults); given: two such ball bearings, "
+        "whose stiffness follows load and clearance",
     )
 
     @model_validator(mode="before")
@@ -247,17 +245,15 @@ class RotorSection(Section):
     )
     eccentricity_um: Annotated[Number, Within(least=0, most=200), Usual(0.5, 200)] = Field(
         default=0.0,
-        description="of its gear's axis from its shaft's, at an angle of its own, beside what its accuracy class "
-        "allows; needs manufacture",
+        description="of the gear's axis from its shaft's, beside what its accuracy class allows; needs manufacture",
     )
     bearing: BearingSection = Field(default=BearingSection(), description="what its shaft turns in")
 
 
 CHOSEN = (
-    "torque that shafts are made for over rated_torque_nm; shear by it that their ends bear; their length over the "
-    "distance of bearings; series of ball bearings, another one where its balls would not last 20,000 h or not stand "
-    "side by side, and rollers where none does; radial play of each in running, below 0 a preload; damping over "
-    "stiffness"
+    "design torque over rated_torque_nm; shear at shaft ends; shaft length over bearing distance; series "
+    "of ball bearings, another or rollers where balls do not last 20,000 h or fit; radial play, below 0 "
+    "preload; damping over stiffness"
 )
 
 
@@ -324,8 +320,7 @@ class Dynamics(Section):
     )
     integration_tolerance: Annotated[float, Field(ge=1e-5, le=1e-2)] = Field(
         default=1e-3,
-        description="relative rms error of the delivered signals that the steps of every record are chosen for with "
-        "the law pairs",
+        description="relative rms error of the signals that steps are chosen for with the law pairs",
     )
     mesh_damping_ratio: Annotated[Number, Within(least=0, below=1), Usual(0.005, 0.3)] = Field(
         default=0.07, description="damping of the teeth in contact, as a share of the critical one"

@@ -141,8 +141,8 @@ class ToothForm(Section):
     )
     helix_deg: Annotated[Number, Within(least=-45, most=45), Usual(1, 45)] = Field(
         default=0.0,
-        description="helix angle on the pitch cylinder, positive: right-handed driving gear; modules, coefficients and "
-        "pressure angle stay those of the normal section",
+        description="on the pitch cylinder, positive: right-handed driving gear; modules, coefficients and "
+        "pressure angle are those of the normal section",
     )
     face_width_mm: Annotated[Number, Within(above=0)] = Field(description="width of the teeth in contact")
     youngs_modulus_gpa: Annotated[Number, Within(above=0)] = Field(
@@ -171,10 +171,7 @@ class GearsSection(Pair):
 
     pairs: Annotated[Pairs, PAIRS] = Field(
         default=(),
-        description=(
-            "pairs of the set, one for each gearbox; other numbers are those of the pair above, carried over; null: "
-            "no other pairs"
-        ),
+        description="one for each gearbox; other numbers are carried over from the pair above; null: no other pairs",
     )
 
     def teeth_of(self, which: str) -> tuple[int, ...]:

@@ -20,8 +20,8 @@ from siggen.keys.usual import Usual
 
 Length = Annotated[Number | None, Within(above=0, most=10_000, words=(None,))]
 INSIDE = (
-    "inside, across the shafts, upright and along the shafts; null: the gears with clearances of 10 to 26 % of the "
-    "centre distance at either end, 15 to 31 % above and a sump of 26 to 62 %, and as wide as the bearings need"
+    "inside, across, upright and along the shafts; null: clearances of 10 to 26 % of the centre distance "
+    "at either end, 15 to 31 % above, a sump of 26 to 62 %; as wide as the bearings need"
 )
 EACH = "of each, horizontal (shear) and vertical (axial)"
 FOOT = "what one foot has left of its stiffness: that beside the driver, behind, or the first bolt of a rigid housing"
@@ -91,8 +91,7 @@ class ModalHousing(Section):
 
     kind: Literal["modal"] = Field(description="a body whose modes are known")
     modes: str = Field(
-        description="a CSV file, a line per mode; its path counts from the folder of the configuration, and its "
-        "content takes its place, so that the set needs no file"
+        description="CSV file, a line per mode, from the folder of the configuration; its content takes its place"
     )
 
 

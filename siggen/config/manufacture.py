@@ -13,13 +13,10 @@ from siggen.keys.problems import refusal
 from siggen.keys.section import Section
 from siggen.keys.usual import Usual
 
-CLASS = (
-    "flank tolerance class of ISO 1328-1, 1 to 11: a whole number, or {one_of: [a, b]}; of the driven gear, null: "
-    "drawn like the driver's, for itself"
-)
+CLASS = "of ISO 1328-1: a whole number, or {one_of: [a, b]}; driven gear, null: drawn like the driver's, for itself"
 CROWNING = (
-    "lead crowning: a parabola that takes so much at both ends of the face; of the "
-    "driven gear, null: drawn like the driver's, for itself"
+    "lead crowning: what a parabola takes at both ends of the face; driven gear, null: drawn like the "
+    "driver's, for itself"
 )
 
 
@@ -49,20 +46,18 @@ class Manufacture(Section):
     lead_misalignment_um: Annotated[Number | str, Within(least=0, most=500, words=("iso_1328",)), Usual(0.1, 100)] = (
         Field(
             default=0.0,
-            description=(
-                "by how much the flanks are apart at one end of the face, either end; iso_1328: what helix slopes make"
-            ),
+            description="gap of the flanks at one end of the face, either end; iso_1328: what helix slopes make",
         )
     )
     flank_waves: Literal["off", "on"] = Field(
         default="off",
-        description="waves over all teeth of each gear (ghosts, chuck), and forms of the teeth that fall with their "
-        "order; part of no tolerance, and of no other label",
+        description="waves over all teeth (ghosts, chuck), and forms of teeth that fall with their order; part of "
+        "no tolerance, no other label",
     )
     draw: Literal["specimen", "state"] = Field(
         default="specimen",
-        description="specimen: one gear pair in all states, as on a rig; state: another pair of the same drawing for "
-        "each state, as in a field of machines",
+        description="specimen: one gear pair in all states, as on a rig; state: another pair for each, as in a "
+        "field of machines",
     )
 
     @model_validator(mode="after")

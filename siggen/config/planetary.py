@@ -41,8 +41,8 @@ class Planetary(Section):
     ring_teeth: Annotated[Whole, Field(ge=8, le=1000)] = Field(description="number of teeth of the ring")
     positions_deg: Annotated[tuple[Real, ...], Field(min_length=1, max_length=9), POSITIONS] = Field(
         default=(0.0, 120.0, 240.0),
-        description="where the planets stand on the carrier, in its sense of turning; rounded ones count as the place "
-        "nearby at which teeth fit",
+        description="where planets stand on the carrier, in its sense of turning; the nearest place at which teeth"
+        " fit counts",
     )
     pin_error_um: Annotated[Number, Within(least=0, most=200), Usual(0.1, 200)] = Field(
         default=0.0,

@@ -44,8 +44,8 @@ class StateSection(Section):
     severity: StateName = Field(description="default: the state's name; healthy without damage")
     grows: str | None = Field(
         default=None,
-        description="name of the milder state that it grows from: it contains its damage, and takes over all its keys "
-        "beside its own; null: it begins anew",
+        description="milder state whose damage it contains, and whose keys it takes over beside its own; null: it "
+        "begins anew",
     )
     like: str | None = Field(
         default=None,
@@ -58,14 +58,13 @@ class StateSection(Section):
     acts: bool = Field(
         default=True,
         strict=True,
-        description="false: a sham, whose damage is drawn, tabulated and passed on, with nothing removed: a healthy "
-        "state that no record may give away",
+        description="false: a sham: damage is drawn, tabulated and passed on with nothing removed, a healthy state"
+        " that no record may give away",
     )
 
     changes: Changes = Field(
         default=(),
-        description="keys of the machine or of its sensors that differ from the healthy gearbox: a number instead, "
-        "times or plus a number",
+        description="keys of machine or sensors that differ from the healthy gearbox: a number instead, times or plus",
         json_schema_extra={"default": {}},
     )
 

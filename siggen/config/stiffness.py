@@ -21,8 +21,8 @@ class Stiffness(Section):
     )
     coupling: Literal["none", "body", "auto"] = Field(
         default="auto",
-        description="whether neighbouring teeth deflect each other through the gear body; none: the plain sum of pairs "
-        "(paper A); auto: body for calibrated, none otherwise",
+        description="neighbouring teeth: none: the plain sum of pairs (paper A); body: they deflect each other "
+        "through it; auto: body for calibrated, else none",
     )
 
     @property

@@ -14,7 +14,7 @@ from siggen.keys.usual import Usual
 RARE = 4.0
 """Standard deviations that a slow random part hardly ever leaves; the band must carry the speed up to there."""
 
-RAMP = "speed at the first sample, and at the last, over that of the operating point; linear between (run-up, run-down)"
+RAMP = "speed at the first and last sample over the operating point's; linear between (run-up, run-down)"
 RANDOM = "slow random part, relative; usual are 0.001 to 0.005 of speeds, 0.01 to 0.05 of torques"
 RIPPLE = "amplitude once per revolution, and twice, relative; 0.0002 to 0.001 is usual"
 
@@ -35,8 +35,8 @@ class SpeedVariation(Section):
     )
     slip: Annotated[Number, Within(least=0, most=0.2), Usual(0.001, 0.2)] = Field(
         default=0.0,
-        description="share of the speed that the motor loses, in proportion to the torque, at dynamics.rated_torque_nm "
-        "or, where that is null, at the largest torque of the operating points",
+        description="share of the speed that the motor loses at dynamics.rated_torque_nm, or else at the largest "
+        "torque; in proportion to the torque",
     )
 
 

@@ -33,8 +33,8 @@ AnyGear: TypeAlias = Annotated[str, Field(pattern=rf"^{PART}(\.{PART})?$"), GEAR
 """`either`: drawn per gearbox, the same for all of its states."""
 
 DAMAGED_GEAR = (
-    "damaged gear: pinion, gear, or either, drawn per gearbox; of a machine a gear by its name, or MESH.either; of a "
-    "planetary set sun, ring, or planet, the first one"
+    "damaged gear: pinion, gear, either (drawn); of a machine its name or MESH.either; of a planetary set "
+    "sun, ring, planet (the first)"
 )
 
 HeightReading: TypeAlias = Literal["axial", "radial", "arc"]
@@ -51,13 +51,10 @@ PlaceOnFace = Annotated[Number | None, Within(least=0, words=(None,)), Grows(FAC
 
 FloorShape: TypeAlias = Literal["flat", "dish"]
 
-READING = (
-    "how heights above the base circle, and lengths of spalls along the profile, are measured: along the tooth's axis, "
-    "along the radius, along the flank"
-)
+READING = "how heights and lengths along the profile are measured: along the tooth's axis, the radius, the flank"
 MIDDLE_HEIGHT = (
-    "height of the middle above the base circle, or pitch; irregular spalls also below_pitch: half way from the "
-    "lowest point of single contact to the pitch line"
+    "of the middle above the base circle, or pitch; irregular spalls also below_pitch: half way from the "
+    "lowest point of single contact"
 )
 FACE_CENTRE = "middle across the face; null: of the face"
 PROFILE_LENGTH = "length along the profile; of irregular spalls the mean"

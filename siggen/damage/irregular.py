@@ -307,8 +307,7 @@ class IrregularSpalls(Fault):
     face_centre_mm: PlaceOnFace = Field(default=None, description=FACE_CENTRE)
     skew_mm_per_10mm: Skew = Field(
         default=Uniform(low=-0.15, high=0.15),
-        description="rise of an edge towards the tip over 10 mm of face, in mm of arc, drawn for each edge by itself; "
-        "the default is assumed",
+        description="rise of an edge towards the tip over 10 mm of face, in mm of arc, drawn for each edge (assumed)",
     )
     waviness: Annotated[Number, Within(least=0, most=0.2), Usual(0.002, 0.2)] = Field(
         default=0.1, description="rms of either edge's waves over the profile length; the default is assumed"

@@ -18,9 +18,7 @@ from siggen.keys.problems import received_text, refusal
 from siggen.keys.usual import Usual
 
 TeethValue = int | tuple[int, ...] | Choice
-DAMAGED_TEETH = (
-    "number of neighbouring teeth (the first is drawn), a choice of numbers, drawn per gearbox, or a list of indices"
-)
+DAMAGED_TEETH = "number of neighbouring teeth (the first is drawn), a choice of numbers (drawn), or a list of indices"
 
 
 class TeethParser(Parser):

@@ -65,8 +65,8 @@ class Accelerometer(SourceKeys, SensorBase):
     )
     position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), size=2), Grows(SIZE)] = Field(
         default=None,
-        description="casing: horizontal and vertical from its centre of gravity; from the middle of a plate: lid: "
-        "horizontal and axial, wall: horizontal and vertical, ends: vertical and axial; null: up to 15 mm, drawn",
+        description="casing: horizontal, vertical from its centre of gravity; from the middle of lid: horizontal, "
+        "axial; wall: horizontal, vertical; ends: vertical, axial; null: up to 15 mm, drawn",
     )
     axes: Annotated[tuple[Literal["vertical", "horizontal", "axial"], ...], Field(min_length=1)] = Field(
         default=("vertical",), description="what it measures, one channel each"
