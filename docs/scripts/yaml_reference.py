@@ -45,6 +45,33 @@ CATALOGUES_TEXT = """## Catalogues
 A word stands for the numbers of its line. Keys beside it go first: `{model: laboratory, range_m_s2: 2000}`;
 `background: {like: laboratory, base: null}`. The set's own `config.yaml` holds all numbers.
 """
+EXAMPLES = {
+    "splits": "splits: {train: 10, validation: 5, test: 5}",
+    "gears": "gears: {module_mm: 2.5, face_width_mm: 20, pinion: {teeth: 23, bore_radius_mm: 12}}",
+    "stiffness": "stiffness: {beam: rack_trochoid, coupling: none}",
+    "dynamics": "dynamics: {friction: {oil: ISO VG 100}, mesh: {tip_relief_um: [2, 10]}}",
+    "operating_points": "operating_points: [{speed_hz: [14, 37], torque_nm: 40}]",
+    "states": "states: {worse: {grows: slight, damage: {face_share: 0.9}}}",
+    "states.damage": """\
+states:
+  others: null
+  healthy: {}
+  rows: {damage: {kind: layered, layers: 1, pits_per_layer: 9, semi_axis_face_mm: 0.3, semi_axis_profile_mm: 0.2, depth_mm: 0.4}}
+  pits: {damage: {kind: clustered, count: 12, spread_profile_mm: 0.3, semi_axis_face_mm: 0.3, semi_axis_profile_mm: 0.2, depth_mm: 0.2}}
+  block: {damage: {kind: spall, face_length_mm: 12, profile_length_mm: 1.5, depth_mm: 0.4}}
+  spall: {damage: {kind: irregular, profile_length_mm: 1, face_share: 0.4}}
+  crack: {damage: {kind: crack, depth_share: 0.25}}
+  chip: {damage: {kind: chip, height_mm: 1}}
+  wear: {damage: {kind: wear, depth_um: 20}}
+  bearing: {damage: {kind: bearing_spall, element: outer, length_mm: 2}}""",
+    "sensors": "sensors: {lid: {place: lid, axes: [vertical], model: laboratory, mount: stud}}",
+    "manufacture": "manufacture: {accuracy_class: {one_of: [5, 6, 7]}, tolerance_share: [0.3, 0.5]}",
+    "variation": "variation: {like: laboratory, speed: {start_ratio: 0.8}}",
+    "internals": "internals: {quantities: [mesh_force_n]}",
+    "housing": "housing: {material: steel, wall_mm: 12}",
+    "background": "background: {like: laboratory, second_stage: null}",
+}
+"""Section, without NAME -> how it is written, on top of quickstart."""
 PLACES_OF_WORDS = {
     "variation": "variation",
     "background": "background",
@@ -277,10 +304,18 @@ def page() -> str:
                 lines += [f"## {top.path}", "", f"{text[:1].upper()}{text[1:]}. {need}{listed}", ""]
             else:
                 place = rows[0].keys[0].path.rpartition(" (kind")[0]
-                lines += ["### " + re.sub(r" \(kind: \w+\)", "", place), ""]
-            lines += [*listing_of(schema, rows)]
+                place = re.sub(r" \(kind: \w+\)", "", place)
+                lines += [f"### {place}", ""]
+            lines += [*example_of(top.path if number == 0 else place), *listing_of(schema, rows)]
     lines += [RANGES_TEXT, *ranges(schema), "", CATALOGUES_TEXT, *catalogues()]
     return "\n".join(lines).rstrip() + "\n"
+
+
+def example_of(place: str) -> Iterator[str]:
+    """Yield how a section is written."""
+    example = EXAMPLES.get(place.replace(".NAME", ""))
+    if example is not None:
+        yield from (*(f"    {line}" for line in example.splitlines()), "")
 
 
 def ranges(schema: Schema) -> Iterator[str]:
