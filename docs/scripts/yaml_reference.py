@@ -64,7 +64,16 @@ states:
   chip: {damage: {kind: chip, height_mm: 1}}
   wear: {damage: {kind: wear, depth_um: 20}}
   bearing: {damage: {kind: bearing_spall, element: outer, length_mm: 2}}""",
-    "sensors": "sensors: {lid: {place: lid, axes: [vertical], model: laboratory, mount: stud}}",
+    "sensors": """\
+sensors:
+  others: null
+  lid: {place: lid, axes: [vertical], model: laboratory, mount: stud}
+  first: {kind: encoder, place: pinion}
+  second: {kind: encoder, place: gear}
+  error: {kind: transmission_error, driver_encoder: first, driven_encoder: second}
+  flange: {kind: coupling_torque, range_nm: 200}
+  washer: {kind: bearing_force, range_n: 10000}
+  clamp: {kind: motor_current, rated_torque_nm: 60, range_a: 100}""",
     "manufacture": "manufacture: {accuracy_class: {one_of: [5, 6, 7]}, tolerance_share: [0.3, 0.5]}",
     "variation": "variation: {like: laboratory, speed: {start_ratio: 0.8}}",
     "internals": "internals: {quantities: [mesh_force_n]}",
