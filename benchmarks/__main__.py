@@ -22,7 +22,7 @@ from benchmarks.row import Row
 from siggen.child_environment import ONE_THREAD
 
 DEFAULT = (
-    *("presets", "precision", "loader", "cold", "memory", "startup"),
+    *("presets", "precision", "loader", "cold", "memory", "startup", "score"),
     *("workers", "quickstart", "indicators", "pages", "house"),
 )
 """CPU time and memory first, then wall time, then what takes long."""

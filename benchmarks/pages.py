@@ -57,12 +57,13 @@ def _costs(gearboxes: int) -> Iterator[tuple[str, tuple[float, float, float]]]:
         folder = Path(parent) / "set"
         overrides = [f"specimens={gearboxes}", f"duration_s={DURATION_S}"]
         chosen = [part for override in overrides for part in ("--set", override)]
-        _run("siggen", "generate", str(QUICKSTART), *chosen, "--out", str(folder))
+        command_cost("siggen", "generate", str(QUICKSTART), *chosen, "--out", str(folder))
         for what, (command, *options) in COMMANDS.items():
-            yield what, _run("siggen-diagnostics", command, str(folder), *options, "--out", str(Path(parent) / command))
+            out = str(Path(parent) / command)
+            yield what, command_cost("siggen-diagnostics", command, str(folder), *options, "--out", out)
 
 
-def _run(*command: str) -> tuple[float, float, float]:
+def command_cost(*command: str) -> tuple[float, float, float]:
     """Run an installed command and return its CPU time, its wall time and its largest resident size [bytes].
 
     Raises
