@@ -11,10 +11,16 @@ The page has every file of predictions in a folder, beside the baselines. Entrie
 parts of the score that ranks, the best first. Differences are paired on the same resampled gearboxes, and stand beside
 the leader of each table. Gearboxes of different parts are independent, so the mean over parts is taken resample by
 resample.
+
+A board counts every entry that was ever judged in its folder, also one whose file is gone: its numbers hold a log, each
+line with the hash of all lines before it. Whoever noted a hash sees whether a later board goes on from there; that its
+keeper begins anew in an empty folder nothing prevents.
 """
 
 from __future__ import annotations
 
+import hashlib
+import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
@@ -69,7 +75,7 @@ from diagnostics.training.feature_classifier import DEFAULT_STRENGTH
 from diagnostics.training.lives import Inspections, blind_inspections, inspections_of, predictors
 from diagnostics.training.referenced import log_values
 from diagnostics.training.splits import SpecimenSplit
-from siggen.errors import UsageError, counted
+from siggen.errors import DatasetError, UsageError, counted
 from siggen.file_writing import write_file
 from siggen.plain_json import json_text
 
@@ -450,6 +456,7 @@ class BoardEntry:
     """Samples of the score of one entry by part: the value itself, then those of resampled gearboxes; and of the leak.
 
     By part too, `gearboxes` is the number that limits count, `chance` what an answer without knowledge reaches.
+    `answers` is the SHA-256 of what it says of all parts.
     """
 
     name: str
@@ -459,6 +466,7 @@ class BoardEntry:
     leak: Mapping[str, np.ndarray]
     gearboxes: Mapping[str, int]
     chance: Mapping[str, float]
+    answers: str
 
     def samples(self, part: str) -> np.ndarray:
         """Return the samples of a part; of their mean only where no part is missing."""
@@ -604,7 +612,56 @@ def _entry(
                 samples[part.name] = measure.samples(said[asked[what]], rows, drawn)
     counts = {part.name: measure.gearboxes(part.truth) for part in parts}
     chance = {part.name: measure.chance(part.truth) for part in parts}
-    return BoardEntry(name, referenced, question, found[question.records], found[question.leak], counts, chance)
+    digest = hashlib.sha256()
+    for of_part, columns in sorted(answers.items()):
+        for column, values in sorted(columns.items()):
+            digest.update(f"/{of_part}/{column}/".encode() + values.tobytes())
+    own = found[question.records], found[question.leak], counts, chance
+    return BoardEntry(name, referenced, question, *own, digest.hexdigest())
+
+
+LOG, CHAIN = "log", "chain"
+SIDE = "beside_a_healthy_record"
+
+
+def entry_log(file: Path, digest: str, entries: Sequence[BoardEntry]) -> list[dict[str, Any]]:
+    """Return the log of a board, from its file of numbers, with the entries that it does not hold yet.
+
+    Parameters
+    ----------
+    file : Path
+        Numbers of the board, which need not be there.
+    digest : str
+        Of the benchmark: what the first line hashes.
+    entries : sequence of BoardEntry
+
+    Raises
+    ------
+    DatasetError
+        If a line is not the one that was written.
+    """
+    kept = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {LOG: []}
+    found, chain = [], digest
+    for number, line in enumerate(kept[LOG]):
+        chain = _chained(chain, line)
+        if line.get(CHAIN) != chain:
+            raise DatasetError(
+                f"{file}: line {number + 1} of its log is not what was written there, or of another benchmark; lay the "
+                "file back, or name a new folder with out, where counting begins anew"
+            )
+        found.append(line)
+    known = {(line[SIDE], line["answers"]) for line in found}
+    for entry in entries:
+        if (entry.referenced, entry.answers) not in known:
+            line = {"name": entry.name, SIDE: entry.referenced, "answers": entry.answers}
+            chain = _chained(chain, line)
+            found.append({**line, CHAIN: chain})
+    return found
+
+
+def _chained(before: str, line: Mapping[str, Any]) -> str:
+    said = json.dumps({name: value for name, value in line.items() if name != CHAIN}, sort_keys=True)
+    return hashlib.sha256(f"{before}/{said}".encode()).hexdigest()
 
 
 def write_board(
@@ -623,8 +680,10 @@ def write_board(
     question = question_of(benchmark.learn().config)
     tables = {side: _ordered(entries, parts_of(benchmark.parts, referenced=side), side) for side in question.tracks}
     numbers = [row for ordered in tables.values() for row in _numbers(ordered, benchmark)]
+    log = entry_log(folder / NUMBERS, benchmark.digest, [entry for ordered in tables.values() for entry in ordered])
+    counts = {side: sum(line[SIDE] == side for line in log) for side in tables}
     limits = {
-        question.tracks[side]: {"entries": len(ordered), "best_by_chance": best_by_chance(len(ordered), spread[side])}
+        question.tracks[side]: {"entries": counts[side], "best_by_chance": best_by_chance(counts[side], spread[side])}
         for side, ordered in tables.items()
         if ordered and spread[side] > 0.0
     }
@@ -633,10 +692,11 @@ def write_board(
         "simulation_version": benchmark.simulation_version,
         "counted": limits,
         "entries": numbers,
+        LOG: log,
     }
     write_file(folder / NUMBERS, json_text(facts))
     title = f"Leaderboard of {benchmark.title}, {benchmark.tier}"
-    parts: list[Block] = [Heading(title, 1), *summary_blocks(_sentences(benchmark, tables, spread))]
+    parts: list[Block] = [Heading(title, 1), *summary_blocks(_sentences(benchmark, tables, spread, log))]
     for referenced, ordered in tables.items():
         if ordered:
             parts += [
@@ -661,7 +721,10 @@ def _goodness(entry: BoardEntry) -> float:
 
 
 def _sentences(
-    benchmark: Benchmark, tables: Mapping[bool, list[BoardEntry]], spread: Mapping[bool, float]
+    benchmark: Benchmark,
+    tables: Mapping[bool, list[BoardEntry]],
+    spread: Mapping[bool, float],
+    log: Sequence[Mapping[str, Any]],
 ) -> list[str]:
     entries, question = (
         [entry for ordered in tables.values() for entry in ordered],
@@ -670,13 +733,18 @@ def _sentences(
     return [
         *(_lead(question.tracks[referenced], ordered) for referenced, ordered in tables.items() if ordered),
         *(
-            _count_sentence(question.tracks[side], len(own), spread[side])
+            _count_sentence(question.tracks[side], sum(line[SIDE] == side for line in log), spread[side])
             for side, own in tables.items()
             if own and spread[side] > 0.0
         ),
         *([_leak_sentence(entries)] if question.leak else []),
         f"Scores are {question.scores_are}, with 95 % limits over gearboxes. Digest {benchmark.digest}, simulation "
         f"version {benchmark.simulation_version}: only scores with the same two are comparable.",
+        *(
+            f"{counted(len(log), 'entry', 'entries')} judged in this folder so far. Its log ends with "
+            f"{line[CHAIN][:16]}: a later board whose log does not hold that was begun anew."
+            for line in log[-1:]
+        ),
     ]
 
 
@@ -770,7 +838,7 @@ def _numbers(ordered: Sequence[BoardEntry], benchmark: Benchmark) -> list[dict[s
     return [
         {
             "name": entry.name,
-            "beside_a_healthy_record": entry.referenced,
+            SIDE: entry.referenced,
             entry.question.score_key: {part: entry.score(part) for part in _parts(entry, benchmark)},
             "sham": {part: area_interval(one, entry.gearboxes[part]) for part, one in entry.leak.items()},
             "minus_first": {

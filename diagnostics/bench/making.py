@@ -461,11 +461,12 @@ def make_benchmark(
 
 def cost_sentence(learn: Any) -> str:
     """Return what each tier costs with a configuration to learn from, in minutes of CPU."""
-    each, names = learn.records_per_specimen, question_of(learn.canonical()).parts(CONDITIONS)
+    parts, repeats = question_of(learn.canonical()).parts(CONDITIONS), learn.records_per_specimen // learn.state_count
     a_record_s, said = RECORD_S * (START_S + learn.duration_s), []
+    of_whole = [len(own.get("states", range(learn.state_count))) for name, own in parts.items() if not is_alone(name)]
     for tier, size in TIERS.items():
-        by_itself = size.test * sum(map(is_alone, names))
-        others = each * (size.learn + size.test * sum(not is_alone(name) for name in names))
+        by_itself = size.test * (len(parts) - len(of_whole))
+        others = repeats * (size.learn * learn.state_count + size.test * sum(of_whole))
         minutes = a_record_s * (others + BY_ITSELF * by_itself) / 60
         said.append(f"{tier} {counted(others + by_itself, 'record')}, {minutes:.0f} min")
     return f"CPU time to simulate: {', '.join(said)}"

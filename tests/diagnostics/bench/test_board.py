@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -27,6 +28,7 @@ from diagnostics.bench.leaderboard import (
 )
 from diagnostics.bench.question import parts_of
 from diagnostics.scoring.benchmark import open_benchmark
+from siggen.errors import DatasetError
 from tests.diagnostics.bench.conftest import Made
 
 
@@ -95,6 +97,33 @@ def test_the_board_orders_entries_and_pairs_their_differences(made: Made, learne
     chance = rows[CHANCE]["auc"]["same_alone"]
     assert chance["low"] < 0.5 < chance["high"]
     assert rows[CHANCE]["minus_first"]["same_alone"]["high"] < 0.0
+
+
+def test_a_board_counts_entries_whose_files_are_gone_and_refuses_a_log_that_was_changed(
+    made: Made, learned: Path, tmp_path: Path
+) -> None:
+    table = pq.read_table(learned / "baselines" / "predictions.parquet", columns=["record_id"])
+    asked = sorted(set(table.column("record_id").to_pylist()))
+    file, out, rng = tmp_path / "mine.parquet", tmp_path / "board", np.random.default_rng(0)
+
+    def board(damage: np.ndarray) -> dict[str, Any]:
+        pq.write_table(pa.table({"record_id": asked, "damage": damage}), file)
+        diagnostics.leaderboard(learned, tmp_path, out=out, labels=made.sealed)
+        found: dict[str, Any] = json.loads((out / NUMBERS).read_text())
+        return found
+
+    answers = rng.normal(size=(3, len(asked)))
+    boards = [board(damage) for damage in (*answers, answers[0])]  # a second time is no further try
+    first = len(boards[0]["log"])
+    assert [len(one["log"]) - first for one in boards] == [0, 1, 2, 2]
+    assert [len(one["entries"]) for one in boards] == [first] * 4
+    limits = [one["counted"]["Alone"]["best_by_chance"] for one in boards]
+    assert limits[0] < limits[1] < limits[2] == limits[3]
+    assert boards[-1]["log"][-1]["chain"][:16] in (out / BOARD).read_text()
+    for changed in (boards[-1]["log"][1:], [*boards[-1]["log"][:-2], boards[-1]["log"][-1]]):
+        (out / NUMBERS).write_text(json.dumps({**boards[-1], "log": changed}))
+        with pytest.raises(DatasetError, match="of its log is not what was written there"):
+            board(answers[0])
 
 
 def test_a_classifier_of_states_is_graded_where_it_could_learn_them_and_detects_elsewhere(
