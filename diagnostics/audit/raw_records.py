@@ -38,7 +38,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import combinations, pairwise
@@ -633,12 +633,12 @@ def _raw_record(record: Recording) -> _RawRecord:
     accelerations = {name: x for name, x in held.items() if _is_acceleration(record, name)}
     first = round(float(record.tacho_s[0]) * record.fs_hz) if record.tacho_s.size else 0
     layers = {
-        EDGES: {f"{what} of {name}": rank for name, x in held.items() for what, rank in edge_ranks(x).items()},
-        OFFSETS: {f"{what} of {name}": v for name, x in accelerations.items() for what, v in offsets(x).items()},
-        STORED: {f"{what} of {name}": v for name, x in held.items() for what, v in stored_numbers(x).items()},
+        EDGES: _by_channel(held, edge_ranks),
+        OFFSETS: _by_channel(accelerations, offsets),
+        STORED: _by_channel(held, stored_numbers),
         CODE_LAW: code_law(record.channels),
-        COURSE: {f"{what} of {name}": v for name, x in held.items() for what, v in course_numbers(x).items()},
-        BLOCKS: {f"{what} of {name}": v for name, x in held.items() for what, v in block_edges(x).items()},
+        COURSE: _by_channel(held, course_numbers),
+        BLOCKS: _by_channel(held, block_edges),
         ENDS: quiet_ends(held, record.fs_hz),
         CLOCK: {
             "roughness of the pulses": pulse_roughness(record.tacho_s),
@@ -649,7 +649,7 @@ def _raw_record(record: Recording) -> _RawRecord:
     return _RawRecord(
         layers,
         {name: line_contrast(x, record.fs_hz, rates) for name, x in held.items()},
-        {f"{what} of {name}": level for name, x in held.items() for what, level in raw_levels(x).items()},
+        _by_channel(held, raw_levels),
         frozenset(mark for signal in record.channels.values() for mark in sample_marks(signal)),
         np.concatenate([whitened_codes(x) for x in held.values()]),
         np.concatenate([whitened_codes(x[first : first + TEMPLATE_SAMPLES // 2]) for x in held.values()]),
@@ -657,6 +657,10 @@ def _raw_record(record: Recording) -> _RawRecord:
         np.concatenate([level_course(x) for x in held.values()]),
         {name: floor_levels(x) for name, x in held.items()},
     )
+
+
+def _by_channel(held: Mapping[str, np.ndarray], numbers: Callable[[np.ndarray], dict[str, float]]) -> dict[str, float]:
+    return {f"{what} of {name}": value for name, signal in held.items() for what, value in numbers(signal).items()}
 
 
 def _is_acceleration(record: Recording, channel: str) -> bool:

@@ -73,6 +73,7 @@ def _tell_signals(tell, row, columns: list[str], reference) -> None:  # type: ig
     tell(f"{SIGNAL}pulses", pulses.size)
     tell(f"{SIGNAL}first pulse", pulses[0])
     tell(f"{SIGNAL}last pulse", pulses[-1])
+    tell(f"{SIGNAL}jitter of pulses", np.std(np.diff(pulses, 2)) if pulses.size > 2 else 0.0)
     for name in columns:
         values = np.asarray(row[name], dtype=np.float64)
         for what, value in {
@@ -86,10 +87,20 @@ def _tell_signals(tell, row, columns: list[str], reference) -> None:  # type: ig
             "CRC": zlib.crc32(row[name].tobytes()),
             "zeros": np.count_nonzero(values == 0.0),
             "values twice": values.size - np.unique(values).size,
+            "noise, roughness": np.std(np.diff(values, 4)),
+            "noise, quietest block": min(block.std() for block in np.array_split(values, 64)),
             "likeness to the reference": np.corrcoef(values, reference[name])[0, 1] if reference is not row else 0.0,
             "level over the reference": values.std() / np.std(reference[name]),
         }.items():
             tell(f"{SIGNAL}{what} of {name}", value)
+
+
+def permuted_within(positive: np.ndarray, gearbox: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Return labels, (n,), in another order within each gearbox."""
+    order = np.lexsort((rng.uniform(size=gearbox.size), gearbox))
+    found = np.empty_like(positive)
+    found[np.argsort(gearbox, kind="stable")] = positive[order]
+    return found
 
 
 def _group_bytes(file: pq.ParquetFile) -> np.ndarray:

@@ -12,7 +12,7 @@ import pytest
 import siggen
 from diagnostics.statistics.evaluation import column_auc
 from tests.command import command
-from tests.diagnostics.bench.attackers import SIGNAL, attackers
+from tests.diagnostics.bench.attackers import SIGNAL, attackers, permuted_within
 from tests.diagnostics.bench.conftest import GEARBOXES, Made
 
 PERMUTATIONS, TAIL = 2000, 0.002
@@ -24,17 +24,10 @@ def strongest(values: dict[str, np.ndarray], positive: np.ndarray, gearbox: np.n
     names = [name for name, column in values.items() if column.size == positive.size and np.ptp(column) > 0]
     matrix = np.stack([values[name] for name in names], axis=1)
     rng = np.random.default_rng(0)
-    shuffled = np.stack([_within(positive, gearbox, rng) for _ in range(PERMUTATIONS)])
+    shuffled = np.stack([permuted_within(positive, gearbox, rng) for _ in range(PERMUTATIONS)])
     found = np.abs(column_auc(matrix, np.concatenate([positive[None], shuffled])) - 0.5)
     best = found.max(axis=1)
     return names[int(found[0].argmax())], float(np.mean(best[1:] >= best[0]))
-
-
-def _within(positive: np.ndarray, gearbox: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    order = np.lexsort((rng.uniform(size=gearbox.size), gearbox))
-    found = np.empty_like(positive)
-    found[np.argsort(gearbox, kind="stable")] = positive[order]
-    return found
 
 
 def truth(made: Made, part: str) -> dict[int, dict[str, object]]:
