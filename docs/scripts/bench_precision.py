@@ -19,7 +19,7 @@ from diagnostics.statistics.evaluation import area, bootstrap_weights, interval,
 
 AREAS = (0.6, 0.75, 0.9)
 SHARED, ALIKE = 0.3, 0.6
-"""Share of gearboxes in the variance of a score, and correlation of two entries: `sealed_labels.py` measures both."""
+"""Share of gearboxes in the variance of a score, and correlation of two entries: both assumed."""
 DRAWS, POWER = 40, 1.0 + 0.84 / 1.96
 EXTRA = 60
 """Gearboxes of no tier, between `small` and `full`."""
@@ -32,11 +32,7 @@ class Kind(NamedTuple):
     damaged: tuple[bool, ...]
 
 
-KINDS = (
-    Kind("`NAME_alone`", ()),
-    Kind("`NAME`, beside", (True,) * 5 + (False,) * 2),
-    Kind("`other_fault`, beside", (True,) * 4 + (False,) * 2),
-)
+KINDS = (Kind("`NAME_alone`", ()), Kind("`NAME`, beside", (True,) * 5 + (False,) * 2))
 """Of parts that are judged alone a gearbox has one record, with damage or without in turn."""
 
 

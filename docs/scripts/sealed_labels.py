@@ -4,38 +4,37 @@ First: numbers of what is published, in families, as attackers of damage and of 
 whose mean AUC over the parts lies farthest from 0.5, and the share of 2,000 permutations of the labels that reach as
 much. Labels are permuted within gearboxes, of parts with one record of a gearbox within the part.
 
-Second: what other asked records tell of one. A logistic regression learns five indicators on the part to learn from.
+Second: what other asked records tell of one. A logistic regression learns six indicators on the part to learn from.
 Its score is taken as it is, and less the mean of other records: of the same gearbox, or of the three of the part that
 are nearest in speed and torque. Mean of AUC over the parts, with its standard error.
 
-Third, of the folder's baselines: correlation of the scores of two of them, within gearbox-free classes.
+Third: the AUC of numbers of records for damage, over 1,000 secrets, beside its scatter by chance (Mann and Whitney).
 """
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping
-from itertools import combinations
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import pyarrow.parquet as pq
+import pyarrow as pa
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))  # the attackers are those of the tests
 
 import diagnostics  # noqa: E402
+from diagnostics.audit.detectability import ADDED, LEVELS, PLAIN  # noqa: E402
 from diagnostics.base.single_thread import single_thread  # noqa: E402
-from diagnostics.bench.question import is_alone  # noqa: E402
+from diagnostics.bench.making import SimulatedPart, renumbered  # noqa: E402
+from diagnostics.bench.question import damage_records, is_alone  # noqa: E402
 from diagnostics.records.state_classes import HEALTHY, SHAM  # noqa: E402
-from diagnostics.scoring.benchmark import BASELINES, Benchmark, labelled, labels_of  # noqa: E402
-from diagnostics.scoring.prediction_file import PREDICTIONS_FILE  # noqa: E402
+from diagnostics.scoring.benchmark import Benchmark, labelled, labels_of  # noqa: E402
 from diagnostics.statistics.evaluation import column_auc, weighted_auc  # noqa: E402
 from tests.diagnostics.bench.attackers import SIGNAL, attackers, permuted_within  # noqa: E402
 
-PERMUTATIONS = 2000
-INDICATORS = ("rms", "kurtosis", "fm4", "na4", "m6a")
+PERMUTATIONS, SECRETS = 2000, 1000
 FAMILIES: Mapping[str, Callable[[str], bool]] = {
     "order and ids": lambda name: not name.startswith((SIGNAL, "column", "last bits", "length")),
     "conditions, texts": lambda name: name.startswith(("column", "last bits", "length")),
@@ -64,18 +63,19 @@ def asked(benchmark: Benchmark, name: str) -> Part:
     records, values = attackers(benchmark.path / "test" / name)
     rows = {row["record_id"]: row for row in dataset.labels("test").to_pylist()}
     own = [rows[record] for record in records.tolist()]
-    columns = (np.array([row[key] for row in own]) for key in ("specimen_id", "state", "fault"))
-    return Part(*columns, values, np.array([[row["speed_hz"], row["torque_nm"]] for row in own]), records)
+    gearbox, state, fault = (np.array([row[key] for row in own]) for key in ("specimen_id", "state", "fault"))
+    conditions = np.array([[row["speed_hz"], row["torque_nm"]] for row in own])
+    return Part(gearbox, state, fault, values, conditions, records)
 
 
 def strongest(parts: list[Part], names: list[str], damaged: bool) -> tuple[str, float, float]:
     """Return the strongest attacker by its mean over parts, that mean, and the share of permutations that reach it."""
-    areas = np.zeros((PERMUTATIONS + 1, len(names)))
+    areas, rng = np.zeros((PERMUTATIONS + 1, len(names))), np.random.default_rng(0)
     for part in parts:
         rows = np.ones(part.state.size, bool) if damaged else part.fault == HEALTHY
         positive = (part.fault != HEALTHY if damaged else part.state == SHAM)[rows]
         lone = np.unique(part.gearbox).size == part.gearbox.size
-        gearbox, rng = np.zeros(positive.size) if lone else part.gearbox[rows], np.random.default_rng(0)
+        gearbox = np.zeros(positive.size) if lone else part.gearbox[rows]
         mixed = np.stack([positive, *(permuted_within(positive, gearbox, rng) for _ in range(PERMUTATIONS))])
         areas += column_auc(np.stack([part.values[name][rows] for name in names], axis=1), mixed) / len(parts)
     best = np.abs(areas - 0.5).max(axis=1)
@@ -111,7 +111,7 @@ def area(score: np.ndarray, part: Part) -> float:
 def print_centred(benchmark: Benchmark, parts: Mapping[str, Part]) -> None:
     """Print what the mean of other records is worth."""
     learn = diagnostics.table(benchmark.learn())
-    names = [name for name in learn.names if name.partition("__")[0] in INDICATORS]
+    names = [name for name in learn.names if name.partition("__")[0] in (*LEVELS, *PLAIN, *ADDED)]
     known = learn.columns(names)
     model = diagnostics.LogisticBaseline(strengths=(0.01,))
     model.fit(known.values, np.where(known.labels["fault"] == HEALTHY, "0", "1"), known.groups)
@@ -135,42 +135,33 @@ def print_centred(benchmark: Benchmark, parts: Mapping[str, Part]) -> None:
         print(f"| {'`NAME_alone`' if alone else '`NAME`'} | {what} | {np.mean(areas):.2f} | {error:.2f} |")
 
 
-def print_correlations(benchmark: Benchmark, parts: Mapping[str, Part]) -> None:
-    """Print how alike baselines are, and how alike the records of one gearbox are to them."""
-    table = pq.read_table(benchmark.path / BASELINES / PREDICTIONS_FILE).to_pylist()
-    entries: dict[tuple[bool, str], dict[int, float]] = {}
-    for row in table:
-        entries.setdefault((row["reference"], row["classifier"]), {})[row["record_id"]] = row["damage"]
-    print("\n| track | pairs of baselines | correlation: quartiles | share of gearboxes in the variance: quartiles |")
-    print("|---|---|---|---|")
-    for referenced in (False, True):
-        own = [part for name, part in parts.items() if is_alone(name) != referenced]
-        scores = [
-            np.concatenate([_within_classes(part, says) for part in own])
-            for (side, name), says in entries.items()
-            if side == referenced and not name.startswith("chance")
-        ]
-        alike = [np.corrcoef(a, b)[0, 1] for a, b in combinations(scores, 2)]
-        gearbox = np.concatenate([part.gearbox for part in own])
-        shares = [_share(score, gearbox) for score in scores] if referenced else [np.nan]
-        said = (", ".join(f"{value:.2f}" for value in np.quantile(one, [0.25, 0.5, 0.75])) for one in (alike, shares))
-        print(f"| {'beside' if referenced else 'alone'} | {len(alike)} | {' | '.join(said)} |")
-
-
-def _within_classes(part: Part, says: Mapping[int, float]) -> np.ndarray:
-    """Return normal ranks of what a baseline says, less the mean of the damaged or the healthy records."""
-    from scipy.stats import norm, rankdata
-
-    score = np.array([says[record] for record in part.record.tolist()])
-    score = norm.ppf((rankdata(score) - 0.5) / score.size)
-    damaged = part.fault != HEALTHY
-    return np.asarray(score - np.where(damaged, score[damaged].mean(), score[~damaged].mean()))
-
-
-def _share(score: np.ndarray, gearbox: np.ndarray) -> float:
-    """Return the share of gearboxes in the variance of a score: covariance of two records of one gearbox."""
-    same = (gearbox[:, None] == gearbox) & ~np.eye(gearbox.size, dtype=bool)
-    return float((score @ same @ score) / same.sum() / np.var(score))
+def print_numbers(gearboxes: int = 14) -> None:
+    """Print what numbers of records tell, over many secrets."""
+    states = {"healthy": HEALTHY, "healthy_again": HEALTHY, "damaged": "spalling", SHAM: HEALTHY}
+    rows = [
+        {
+            "record_id": len(states) * gearbox + place,
+            "specimen_id": gearbox,
+            "operating_point_id": 0,
+            "state_id": place,
+            "state": state,
+            "fault": fault,
+            SHAM: state == SHAM,
+        }
+        for gearbox in range(gearboxes)
+        for place, (state, fault) in enumerate(states.items())
+    ]
+    part = SimulatedPart(pa.Table.from_pylist(rows), pa.table({}), (), [])
+    faults, areas = {row["record_id"]: row["fault"] for row in rows}, []
+    for secret in (f"secret {number}".encode() for number in range(SECRETS)):
+        shown = damage_records(rows, secret, "same")
+        numbers = renumbered(part, shown, secret, "same", 0).record
+        told = np.array([(numbers[old], faults[old] != HEALTHY) for old in shown.asked])
+        areas.append(column_auc(told[:, :1].astype(np.float64), told[:, 1] > 0)[0])
+    damaged, others = gearboxes, gearboxes * (len(states) - 2)
+    chance = ((damaged + others + 1) / (12 * damaged * others)) ** 0.5
+    print(f"\nnumbers of records, {SECRETS} secrets: AUC {np.mean(areas):.3f}, scatter {np.std(areas):.3f}; by chance "
+          f"0.500, {chance:.3f}")  # fmt: skip
 
 
 @single_thread()
@@ -180,8 +171,7 @@ def main(folder: str) -> None:
     parts = {name: asked(benchmark, name) for name in benchmark.parts}
     print_attackers(parts)
     print_centred(benchmark, parts)
-    if (benchmark.path / BASELINES).is_dir():
-        print_correlations(benchmark, parts)
+    print_numbers()
 
 
 if __name__ == "__main__":
