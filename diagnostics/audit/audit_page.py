@@ -37,7 +37,7 @@ from diagnostics.page.blocks import (
 from diagnostics.page.provenance import provenance
 from diagnostics.page.sentences import Sentences
 from diagnostics.page.style import FAULT_COLOURS, HEALTHY_COLOUR, PINION_COLOUR, new_figure
-from diagnostics.page.tables import interval_cell
+from diagnostics.page.tables import cell, table
 from diagnostics.page.wording import capitalised, counted
 from siggen.dataset.reading import Dataset
 
@@ -101,21 +101,14 @@ def _strongest_table(audit: Audit) -> TableBlock:
     ladders = [{entry.state: entry for entry in audit.ladder(referenced=side)} for side in (False, True)]
     rows = []
     for state in audit.states:
-        cells = [Cell(state)]
+        cells: list[object] = [state]
         for ladder in ladders:
             entry = ladder.get(state)
-            cells += [Cell(entry.basis), interval_cell(entry.auc)] if entry else [Cell("–"), Cell("–")]
-        rows.append([*cells, _chance_cell(audit, state), Cell(verdict_words(audit, state))])
+            cells += [entry.basis, entry.auc] if entry else [None, None]
+        law = audit.chance.states.get(state) if audit.chance else None
+        rows.append([*cells, cell(law.p_value if law else None, ".3f"), verdict_words(audit, state)])
     head = ["State", "Strongest alone", "AUC [-]", "Strongest with a healthy reference", "AUC [-]", "Chance", "Verdict"]
-    return TableBlock(head, rows, caption=SAID.strongest_table(), text=True)
-
-
-def _chance_cell(audit: Audit, state: str) -> Cell:
-    """Return the p-value of the bank of attackers on a state."""
-    law = audit.chance.states.get(state) if audit.chance else None
-    if law is None or not math.isfinite(law.p_value):
-        return Cell("–")
-    return Cell(f"{law.p_value:.3f}", value=law.p_value)
+    return table(head, rows, SAID.strongest_table(), text=True)
 
 
 def _every_table(audit: Audit) -> TableBlock:
@@ -123,12 +116,10 @@ def _every_table(audit: Audit) -> TableBlock:
     for name, entries in audit.detections.items():
         by_state = {entry.state: entry.auc.value for entry in entries}
         number = max((entry.tried for entry in entries), default=0)
-        cells = [by_state.get(state, math.nan) for state in audit.states]
-        shown = [Cell(f"{auc:.2f}" if math.isfinite(auc) else "–", value=auc) for auc in cells]
-        rows.append([Cell(capitalised(name)), Cell(str(number), value=number), *shown])
+        rows.append((capitalised(name), number, *(by_state.get(state) for state in audit.states)))
     head = ["Attacker", "Columns", *audit.states]
     caption = "Every attacker on every state: AUC against healthy on gearboxes that were not seen."
-    return TableBlock(head, rows, caption=caption, sortable=True)
+    return table(head, rows, caption, sortable=True)
 
 
 OUTSIDE = 0.05
@@ -144,28 +135,17 @@ def reference_sentences(found: ReferenceComparison) -> list[str]:
 def reference_parts(found: ReferenceComparison) -> list[Block]:
     """Return the tables of the page."""
     rows = [
-        [
-            Cell(gap.name),
-            *(_number(value) for value in (gap.auc, gap.measured, gap.synthetic, gap.synthetic_spread)),
-            Cell(f"{100.0 * gap.inside:.0f}", value=gap.inside),
-        ]
+        (*(gap.name, gap.auc, gap.measured, gap.synthetic, gap.synthetic_spread), cell(100.0 * gap.inside, ".0f"))
         for gap in found.gaps
     ]
     head = ["Feature", "AUC [-]", "Measured", "Synthetic", "Spread of gearboxes", "Synthetic inside [%]"]
-    places = [
-        [Cell(p.name), _number(p.distance), Cell(f"{100.0 * p.farther:.0f}", value=p.farther), Cell(str(p.windows))]
-        for p in found.places
-    ]
+    places = [(p.name, p.distance, cell(100.0 * p.farther, ".0f"), p.windows) for p in found.places]
     place_head = ["Recording", "Distance [spreads]", "Channels as far [%]", "Windows"]
     return [
         *(Paragraph(text) for text in reference_sentences(found)),
-        TableBlock(place_head, places, caption=SAID.places_table(), sortable=True),
-        TableBlock(head, rows, caption=SAID.gaps_table(), sortable=True),
+        table(place_head, places, SAID.places_table(), ".3g", sortable=True),
+        table(head, rows, SAID.gaps_table(), ".3g", sortable=True),
     ]
-
-
-def _number(value: float) -> Cell:
-    return Cell(f"{value:.3g}", value=value)
 
 
 def audit_summary(audit: Audit) -> list[str]:
@@ -343,54 +323,43 @@ def audit_page(audit: Audit, dataset: Dataset, drawn: dict[str, bytes]) -> Page:
 
 def _best_table(audit: Audit) -> TableBlock:
     rows = [
-        [
-            Cell(state),
-            Cell(best.column.split("__", 1)[0], best.column.split("__", 1)[1]),
-            interval_cell(best.auc),
-            Cell(f"{best.held_out:.2f}" if math.isfinite(best.held_out) else "–", value=best.held_out),
-        ]
-        for state, best in ((state, audit.best[state]) for state in audit.states if state in audit.best)
+        (state, Cell(indicator, channel), best.auc, best.held_out)
+        for state in audit.states
+        if (best := audit.best.get(state))
+        for indicator, channel in (best.column.split("__", 1),)
     ]
     head = ["State", "Best indicator", "Its AUC [-]", "Chosen on other gearboxes [-]"]
     tried = max(best.tried for best in audit.best.values())
     caption = f"Best of {counted(tried, 'single indicator')} by state: AUC against healthy, with 95 % limits."
-    return TableBlock(head, rows, caption=caption, text=True)
+    return table(head, rows, caption, text=True)
 
 
 def _findings_table(audit: Audit) -> TableBlock:
-    rows = [[Cell(f.trap), Cell(f.measured), Cell(f.bound), Cell(f.mend)] for f in audit.findings]
+    rows = [(one.trap, one.measured, one.bound, one.mend) for one in audit.findings]
     caption = "Traps, what was measured, and how to correct the configuration."
-    return TableBlock(["Trap", "Measured", "Bound", "How to correct it"], rows, caption=caption, text=True)
+    return table(["Trap", "Measured", "Bound", "How to correct it"], rows, caption, text=True)
 
 
 def _realism_parts(found: Realism, drawn: dict[str, bytes]) -> list[Block]:
     head = ["Quantity", "Range", "5 %", "Median", "95 %", "Inside [%]", "Undefined [%]"]
     spread_head = ["Quantity", "Median [dB]", "Range [dB]"]
-    spread = [
-        [Cell(s.name), Cell(f"{s.spread_db:.1f}"), Cell(f"{s.wanted_db[0]:g} … {s.wanted_db[1]:g}")]
-        for s in found.spreads
-    ]
+    spread = [(one.name, one.spread_db, f"{one.wanted_db[0]:g} … {one.wanted_db[1]:g}") for one in found.spreads]
     return [
         Paragraph(SAID.inside_all(found)),
-        TableBlock(head, _share_rows(found.shares), caption=RANGE_CAPTION, sortable=True),
-        *(
-            [TableBlock(head, _share_rows(found.background), caption=BACKGROUND_CAPTION, sortable=True)]
-            if found.background
-            else []
-        ),
-        *([TableBlock(spread_head, spread, caption="Spread between the sensors of a gearbox.")] if spread else []),
+        table(head, _share_rows(found.shares), RANGE_CAPTION, ".3g", sortable=True),
+        table(head, _share_rows(found.background), BACKGROUND_CAPTION, ".3g", sortable=True),
+        table(spread_head, spread, "Spread between the sensors of a gearbox.", ".1f"),
         FigureGrid([FigureBlock(drawn["realism"], REALISM_CAPTION)]),
     ]
 
 
-def _share_rows(shares: tuple[QuantityShare, ...]) -> list[list[Cell]]:
+def _share_rows(shares: tuple[QuantityShare, ...]) -> list[list[object]]:
     return [
         [
-            Cell(share.quantity.title),
-            Cell(" or ".join(f"{low:g} … {high:g}" for low, high in share.quantity.ranges)),
-            *(Cell(f"{point:.3g}" if math.isfinite(point) else "undefined", value=point) for point in share.quantiles),
-            Cell(f"{100.0 * share.inside:.0f}", value=share.inside),
-            Cell(f"{100.0 * share.undefined:.0f}", value=share.undefined),
+            share.quantity.title,
+            " or ".join(f"{low:g} … {high:g}" for low, high in share.quantity.ranges),
+            *share.quantiles,
+            *(cell(100.0 * part, ".0f") for part in (share.inside, share.undefined)),
         ]
         for share in shares
     ]
@@ -399,11 +368,7 @@ def _share_rows(shares: tuple[QuantityShare, ...]) -> list[list[Cell]]:
 def _detection_parts(name: str, entries: list[Detectability], audit: Audit) -> list[Block]:
     sizes = [size for size in SIZES if entries and size in entries[0].sizes]
     rows = [
-        [
-            Cell(entry.state, entry.basis or entry.fault),
-            interval_cell(entry.auc),
-            *(Cell(f"{entry.sizes[size]:.3g}", value=entry.sizes[size]) for size in sizes),
-        ]
+        (Cell(entry.state, entry.basis or entry.fault), cell(entry.auc), *(entry.sizes[size] for size in sizes))
         for entry in entries
     ]
     title = name[0].upper() + name[1:]
@@ -418,7 +383,7 @@ def _detection_parts(name: str, entries: list[Detectability], audit: Audit) -> l
     ]
     head = ["State", "AUC [-]", *(SIZE_TITLES[size] for size in sizes)]
     told = [Paragraph(f"Interpolated damaged area: {'; '.join(reached)}.")] if reached else []
-    return [Heading(title, 3), TableBlock(head, rows, caption=caption, sortable=True), *told]
+    return [Heading(title, 3), table(head, rows, caption, ".3g", sortable=True), *told]
 
 
 def _reached(area: DetectedArea | None) -> str:

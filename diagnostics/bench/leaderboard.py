@@ -59,7 +59,7 @@ from diagnostics.page.blocks import (
     summary_blocks,
 )
 from diagnostics.page.style import png_bytes
-from diagnostics.page.tables import interval_cell
+from diagnostics.page.tables import cell
 from diagnostics.page.template import write_page
 from diagnostics.page.wording import capitalised, decimal, minus
 from diagnostics.records.state_classes import HEALTHY, SHAM
@@ -806,7 +806,7 @@ def _table(ordered: Sequence[BoardEntry], parts: Sequence[str]) -> list[Block]:
     rows, apart = [], []
     for place, entry in enumerate(ordered, start=1):
         known = (*entry.every, *((MEAN,) if len(entry.every) == len(parts) else ()))
-        shown = [interval_cell(entry.score(part)) if part in known else Cell("–") for part in columns]
+        shown = [cell(entry.score(part)) if part in known else Cell("–") for part in columns]
         rows.append([Cell(f"{place}. {entry.name}", value=float(place)), *shown])
         pairs = [_behind(leader, entry, part) if part in known else Cell("–") for part in columns]
         apart.append([Cell(entry.name), *pairs])
@@ -825,7 +825,7 @@ def _caption(question: Question) -> str:
 def _behind(leader: BoardEntry, entry: BoardEntry, part: str) -> Cell:
     if part not in (MEAN, *leader.every):
         return Cell("–")
-    return interval_cell(paired(leader, entry, part), "+.2f")
+    return cell(paired(leader, entry, part), "+.2f")
 
 
 def paired(first: BoardEntry, second: BoardEntry, part: str) -> Interval:

@@ -39,6 +39,7 @@ from diagnostics.page.blocks import (
     summary_blocks,
 )
 from diagnostics.page.style import FAULT_COLOURS, GEAR_COLOUR, HEALTHY_COLOUR, new_figure, png_bytes, styled
+from diagnostics.page.tables import cell, table
 from diagnostics.page.template import write_page
 from diagnostics.statistics.evaluation import Interval
 
@@ -135,11 +136,8 @@ def _sentences(before: Likeness, after: Likeness, found: Calibration, held_out: 
 
 
 def _likeness_table(found: Calibration, before: Likeness, after: Likeness) -> TableBlock:
-    rows = [
-        [Cell(channel.name), _number(before.distance_db[k]), _number(after.distance_db[k])]
-        for k, channel in enumerate(found.channels)
-    ]
-    return TableBlock(("Channel", "Before [dB]", "After [dB]"), rows, caption="Distance of median spectra.")
+    rows = [(one.name, before.distance_db[k], after.distance_db[k]) for k, one in enumerate(found.channels)]
+    return table(("Channel", "Before [dB]", "After [dB]"), rows, "Distance of median spectra.", ".3g")
 
 
 def _feature_parts(before: Likeness, after: Likeness) -> list[Block]:
@@ -147,14 +145,12 @@ def _feature_parts(before: Likeness, after: Likeness) -> list[Block]:
         return [Paragraph("Recordings or gearboxes are shorter than a second, or sampled below 9.6 kHz: not judged.")]
     earlier = {gap.name: gap for gap in before.features.gaps}
     rows = [
-        [Cell(gap.name), *(_number(v) for v in (earlier[gap.name].auc, gap.auc, gap.measured, gap.synthetic))]
+        (gap.name, earlier[gap.name].auc, gap.auc, gap.measured, gap.synthetic)
         for gap in after.features.gaps[:MOST_FEATURES]
     ]
     head = ("Feature", "AUC before", "AUC after", "Recordings", "Calibrated")
-    return [
-        Paragraph(CALIBRATED.features(before.features, after.features)),
-        TableBlock(head, rows, caption="The most telling after calibration.", sortable=True),
-    ]
+    shown = table(head, rows, "The most telling after calibration.", ".3g", sortable=True)
+    return [Paragraph(CALIBRATED.features(before.features, after.features)), shown]
 
 
 def _level_table(real: Sample, before: Likeness, after: Likeness) -> TableBlock:
@@ -162,11 +158,9 @@ def _level_table(real: Sample, before: Likeness, after: Likeness) -> TableBlock:
     for k, name in enumerate(LEVELS):
         columns = [sample.levels[:, :, k] for sample in (real, before.sample, after.sample)]
         if np.isfinite(columns[0]).any():
-            rows.append([Cell(TITLES.get(name, name)), *(_spread(values) for values in columns)])
+            rows.append((TITLES.get(name, name), *map(_spread, columns)))
     head = ("Quantity", "Recordings", "Before", "After")
-    return TableBlock(
-        head, rows, caption="Median [5 %, 95 %] over records and channels; dB re the strongest mesh line."
-    )
+    return table(head, rows, "Median [5 %, 95 %] over records and channels; dB re the strongest mesh line.")
 
 
 def _fitted_table(found: Calibration) -> TableBlock:
@@ -187,15 +181,12 @@ def _fitted_table(found: Calibration) -> TableBlock:
             if np.isfinite(level.value) and group.name.startswith("mesh")
         }
         facts |= {f"second stage, {one.name} [dB re 1 (m/s²)²]": one.level_db for one in channel.stage}
-        rows += [
-            [Cell(channel.name), Cell(name), _number(v.value), _number(v.low), _number(v.high)]
-            for name, v in facts.items()
-        ]
+        rows += [(channel.name, name, one.value, one.low, one.high) for name, one in facts.items()]
     few = len(found.blocks.blocks) < FEWEST_RECORDINGS
     caption = (
         f"Fitted numbers; {TOO_FEW}." if few else "Fitted numbers with limits of 90 % from leaving recordings out."
     )
-    return TableBlock(("Channel", "Quantity", "Value", "Low", "High"), rows, caption=caption, tall=True)
+    return table(("Channel", "Quantity", "Value", "Low", "High"), rows, caption, ".3g", tall=True)
 
 
 def _spectra(found: Calibration, real: Sample, before: Likeness, after: Likeness, channel: int) -> Figure:
@@ -232,10 +223,6 @@ def _labelled(figure: Figure, axis: object, text: str) -> Figure:
 def _spread(values: np.ndarray) -> Cell:
     known = values[np.isfinite(values)]
     if not known.size:
-        return Cell("-")
+        return cell(None)
     low, middle, high = np.quantile(known, [RANGE[0], 0.5, RANGE[1]])
     return Cell(f"{middle:.3g} [{low:.3g}, {high:.3g}]", value=float(middle))
-
-
-def _number(value: float) -> Cell:
-    return Cell(f"{value:.3g}" if np.isfinite(value) else "-", value=float(value))

@@ -7,8 +7,6 @@ from datetime import datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from diagnostics.machine.check import CHANGED, UNCHANGED, Check, PastCheck, rate_sentence
 from diagnostics.machine.machine import Machine
 from diagnostics.page.blocks import (
@@ -23,6 +21,7 @@ from diagnostics.page.blocks import (
     summary_blocks,
 )
 from diagnostics.page.style import FAULT_COLOURS, HEALTHY_COLOUR, new_figure, png_bytes, styled
+from diagnostics.page.tables import cell, table
 from diagnostics.page.template import write_page
 from diagnostics.page.wording import capitalised
 
@@ -56,23 +55,20 @@ def write_machine_page(machine: Machine, folder: Path, checks: Sequence[Check], 
             _tone(checks),
         ),
         FigureGrid([FigureBlock(figure, TREND)]),
-        TableBlock(
+        table(
             ("Recording", "Verdict", "Reason", "Speed [Hz]"),
-            [[Cell(c.recording), Cell(c.verdict), Cell(c.reason), Cell(f"{c.speed_hz:.4g}")] for c in checks],
-            caption="Newest checks.",
+            [(c.recording, c.verdict, c.reason, c.speed_hz) for c in checks],
+            *("Newest checks.", ".4g"),
             text=True,
         ),
         Paragraph(_look(folder, checks)),
         *(_moved_table(check) for check in checks if check.moved),
         Heading("References"),
         *note_blocks(machine.doubts),
-        TableBlock(
+        table(
             ("Recording", "Speed [Hz]", "Load"),
-            [
-                [Cell(name), Cell(f"{speed:.4g}"), Cell("-" if np.isnan(load) else f"{load:g}")]
-                for name, speed, load in zip(machine.references, machine.speed_hz, machine.load, strict=True)
-            ],
-            caption="Healthy recordings that everything is compared with.",
+            zip(machine.references, machine.speed_hz, machine.load, strict=True),
+            *("Healthy recordings that everything is compared with.", ".4g"),
             tall=True,
         ),
     ]
@@ -114,16 +110,11 @@ def _used(machine: Machine, checks: Sequence[Check]) -> int:
 
 def _moved_table(check: Check) -> TableBlock:
     rows = [
-        [
-            Cell(moved.title, moved.indicator),
-            Cell(moved.channel),
-            Cell(f"{moved.factor:.3g}", value=moved.factor),
-            Cell(f"{moved.spreads:+.1f}", value=moved.spreads),
-        ]
-        for moved in check.moved
+        (Cell(one.title, one.indicator), one.channel, cell(one.factor, ".3g"), cell(one.spreads, "+.1f"))
+        for one in check.moved
     ]
     caption = f"{check.recording} ({check.verdict}): indicators farthest from the healthy recordings."
-    return TableBlock(("Indicator", "Channel", "Factor", "Spreads"), rows, caption=caption, sortable=True)
+    return table(("Indicator", "Channel", "Factor", "Spreads"), rows, caption, sortable=True)
 
 
 def _trend(history: Sequence[PastCheck]) -> Figure:

@@ -22,6 +22,7 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page.angle_figure import ANGLE_CAPTION, angle_figure
 from diagnostics.page.blocks import Block, Cell, FigureBlock, FigureGrid, Heading, Page, TableBlock, note_blocks
 from diagnostics.page.style import png_bytes, styled
+from diagnostics.page.tables import table
 from diagnostics.page.template import write_page
 from diagnostics.prediction.prediction_page import sideband_figure
 from diagnostics.recordings.level_alike import level_note
@@ -69,18 +70,14 @@ def _row(found: RecordingIndicators, channel: str) -> dict[str, Any]:
 
 def _overview(found: Sequence[RecordingIndicators]) -> TableBlock:
     rows = [
-        [
-            Cell(one.name),
-            Cell(f"{one.pulses.speed_hz:.4f}"),
-            Cell(f"{one.mesh_hz:.2f}"),
-            Cell(f"{one.revolutions[0]} and {one.revolutions[1]}"),
-            Cell(one.pulses.origin),
-            Cell(f"{one.recording.duration_s:.3g}"),
-        ]
+        (
+            *(one.name, f"{one.pulses.speed_hz:.4f}", f"{one.mesh_hz:.2f}"),
+            *(f"{one.revolutions[0]} and {one.revolutions[1]}", one.pulses.origin, f"{one.recording.duration_s:.3g}"),
+        )
         for one in found
     ]
     head = ("Recording", "First shaft [Hz]", "Mesh [Hz]", "Turns averaged", "Angle from", "Length [s]")
-    return TableBlock(head, rows, caption="What was found in each recording.", text=True)
+    return table(head, rows, "What was found in each recording.", text=True)
 
 
 def _section(found: RecordingIndicators) -> list[Block]:
@@ -95,7 +92,7 @@ def _section(found: RecordingIndicators) -> list[Block]:
     names, values = indicator_matrix(found)
     known = indicator_columns(IndicatorSettings(), gear_names(found.train))
     rows = [
-        [Cell(known[name].title, small=name), *(_cell(value) for value in of_channels)]
+        (Cell(known[name].title, small=name), *of_channels)
         for name, of_channels in zip(names, values.tolist(), strict=True)
     ]
     head = ("Indicator", *found.recording.channels)
@@ -103,13 +100,9 @@ def _section(found: RecordingIndicators) -> list[Block]:
     return [
         Heading(found.name),
         FigureGrid(blocks),
-        TableBlock(head, rows, caption=caption, sortable=True, tall=True),
+        table(head, rows, caption, ".4g", sortable=True, tall=True),
         *note_blocks([found.note] if found.note else []),
     ]
-
-
-def _cell(value: float) -> Cell:
-    return Cell("undefined" if np.isnan(value) else f"{value:.4g}", value=value)
 
 
 def check_mesh_lines(recording: MeasuredRecording, pulses: ShaftPulses, train: GearTrain) -> None:

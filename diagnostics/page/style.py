@@ -8,7 +8,7 @@ from __future__ import annotations
 import io
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +20,8 @@ from diagnostics.records.gear_train import GearMesh, Planets
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from diagnostics.signal.spectrum import OrderSpectrum
 
 WIDTH_IN = 4.8
 """At this width a phone shows 10-point text at the size of the captions, and half a printed page at 7 points."""
@@ -176,14 +178,42 @@ def _of_planets(gears: tuple[str, ...], planets: Planets, harmonic: int, steps: 
     return {gears[0]: steps + through * carrier, PASSING: passing * carrier, gears[1]: one * carrier}
 
 
-def draw_marks(
-    axis: Any, spectrum: tuple[np.ndarray, np.ndarray], places: Mapping[str, np.ndarray], reach: float
-) -> None:
-    """Mark the lines of a spectrum (offsets and amplitudes) within so many orders of their places."""
-    offset, amplitude = spectrum
-    for (marker, colour), lines in zip(MARKS, places.values(), strict=False):
+ORDERS_SHOWN, SIDEBANDS, DECADES_SHOWN = 4.6, 4, 5.0
+"""On each side of a mesh line, and of amplitudes below the largest."""
+BEHIND_COLOUR, LOWEST = "#b9c4cd", 1e-12
+"""Of the healthy record behind a damaged one, and where its area begins, below every figure."""
+
+
+def draw_mesh_line(
+    axis: Any, spectrum: OrderSpectrum, mesh: GearMesh, harmonic: int, colour: str, behind: OrderSpectrum | None = None
+) -> float:
+    """Draw a spectrum about a mesh harmonic, over another one, its sidebands marked; return the largest amplitude."""
+    axis.set_yscale("log")
+    largest = 0.0
+    if behind is not None:
+        offset, amplitude = _around(behind, mesh, harmonic)
+        largest = float(amplitude.max())
+        axis.fill_between(offset, amplitude, np.full_like(amplitude, LOWEST), color=BEHIND_COLOUR, linewidth=0)
+    offset, amplitude = _around(spectrum, mesh, harmonic)
+    axis.semilogy(offset, amplitude, color=colour)
+    reach = 1.5 / spectrum.revolutions
+    for (marker, shade), lines in zip(MARKS, sideband_places(mesh, harmonic, SIDEBANDS).values(), strict=False):
         height = np.array([amplitude[np.abs(offset - line) <= reach].max(initial=1e-30) for line in lines])
-        axis.plot(lines, ABOVE * height, linestyle="none", marker=marker, markersize=4.5, color=colour)
+        axis.plot(lines, ABOVE * height, linestyle="none", marker=marker, markersize=4.5, color=shade)
+    return max(largest, float(amplitude.max(initial=1e-30)))
+
+
+def _around(spectrum: OrderSpectrum, mesh: GearMesh, harmonic: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return offset from a mesh harmonic [orders] and amplitude, (n,) each."""
+    centre = harmonic * mesh.teeth[0]
+    near = np.abs(spectrum.order - centre) <= ORDERS_SHOWN
+    return spectrum.order[near] - centre, spectrum.amplitude_m_s2[near]
+
+
+def frame_mesh_lines(axis: Any, largest: float) -> None:
+    """Limit the axes of drawn mesh lines, by the largest amplitude of all."""
+    axis.set_ylim(2.0 * largest / 10**DECADES_SHOWN, 4.0 * largest)
+    axis.set_xlim(-ORDERS_SHOWN, ORDERS_SHOWN)
 
 
 def mark_handles(mesh: GearMesh) -> list[Any]:

@@ -6,7 +6,7 @@ Links from tables and figures of a page to the records behind them, further up o
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from urllib.parse import quote, urlencode
 
@@ -45,26 +45,40 @@ def indicator_links(titles: Mapping[str, str]) -> dict[str, str]:
 def set_table(labels: dict[str, np.ndarray], classes: tuple[str, ...]) -> TableBlock:
     """Return records by state and split, and specimens by split; counts lead to their records."""
     splits = [name for name in ("train", "validation", "test") if (labels["split"] == name).any()]
-    rows = [
-        [
-            Cell(state),
-            *(
-                linked_cell(cell, state=state, split=name) if count else cell
-                for name in splits
-                for count in (int(((labels["state"] == state) & (labels["split"] == name)).sum()),)
-                for cell in (Cell(str(count), value=float(count)),)
-            ),
-        ]
-        for state in classes
-    ]
-    count = [np.unique(labels["specimen_id"][labels["split"] == name]).size for name in splits]
-    rows.append([Cell("specimens (gearboxes)"), *(Cell(str(number)) for number in count)])
-    return TableBlock(["State", *splits], rows, caption="Records by state and split, and gearboxes by split.")
+
+    def counted_records(state: str, split: str) -> Cell:
+        count = int(((labels["state"] == state) & (labels["split"] == split)).sum())
+        return linked_cell(cell(count), state=state, split=split) if count else cell(count)
+
+    rows: list[list[object]] = [[state, *(counted_records(state, split) for split in splits)] for state in classes]
+    gearboxes = [str(np.unique(labels["specimen_id"][labels["split"] == name]).size) for name in splits]
+    rows.append(["specimens (gearboxes)", *gearboxes])
+    return table(["State", *splits], rows, "Records by state and split, and gearboxes by split.")
 
 
-def interval_cell(found: Interval, form: str = ".2f") -> Cell:
-    """Return a value with its limits in small print; `form` is Python's, such as `+.2f` for differences."""
-    if not math.isfinite(found.value):
-        return Cell("undefined", value=math.nan)
-    limits = "" if math.isnan(found.low) else f"{found.low:{form}} … {found.high:{form}}"
-    return Cell(f"{found.value:{form}}", limits, found.value)
+def cell(value: object, form: str = ".2f") -> Cell:
+    """Return a value as a cell: an interval with its limits in small print, a dash for what is not known.
+
+    `form` is Python's for numbers that are not whole, such as `+.2f` for differences. Cells stay as they are.
+    """
+    if isinstance(value, Cell):
+        return value
+    if isinstance(value, Interval):
+        known = math.isfinite(value.low)
+        limits = f"{value.low:{form}} … {value.high:{form}}" if known else ""
+        return Cell(f"{value.value:{form}}", limits, value.value) if math.isfinite(value.value) else UNDEFINED
+    if isinstance(value, (int, np.integer)):
+        return Cell(str(value), value=float(value))
+    if isinstance(value, (float, np.floating)):
+        return Cell(f"{value:{form}}" if math.isfinite(value) else "–", value=float(value))
+    return UNKNOWN if value is None else Cell(str(value))
+
+
+UNDEFINED, UNKNOWN = Cell("undefined", value=math.nan), Cell("–", value=math.nan)
+
+
+def table(
+    head: Sequence[str], rows: Iterable[Sequence[object]], caption: str, form: str = ".2f", **shown: bool
+) -> TableBlock:
+    """Return a table of values, see `cell`; `shown` are further fields of a block, such as `sortable=True`."""
+    return TableBlock(head, [[cell(value, form) for value in row] for row in rows], caption, **shown)

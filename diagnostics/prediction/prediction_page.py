@@ -19,16 +19,24 @@ import siggen
 from diagnostics.base.extras import require_packages
 from diagnostics.page.blocks import (
     Block,
-    Cell,
     FigureBlock,
     FigureGrid,
     Heading,
     Page,
-    TableBlock,
     note_blocks,
     summary_blocks,
 )
-from diagnostics.page.style import draw_marks, mark_handles, new_figure, order_words, png_bytes, sideband_places, styled
+from diagnostics.page.style import (
+    ORDERS_SHOWN,
+    draw_mesh_line,
+    frame_mesh_lines,
+    mark_handles,
+    new_figure,
+    order_words,
+    png_bytes,
+    styled,
+)
+from diagnostics.page.tables import table
 from diagnostics.page.template import write_page
 from diagnostics.page.wording import capitalised, counted, percent
 from diagnostics.prediction.known_reasons import OwnState
@@ -38,7 +46,7 @@ from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses
 from diagnostics.records.gear_train import GearMesh, first_teeth, meshes_of
 from diagnostics.records.record_classes import STATE
-from diagnostics.signal.spectrum import OrderSpectrum, order_spectrum
+from diagnostics.signal.spectrum import order_spectrum
 from siggen.file_writing import write_file
 from siggen.plain_json import json_text, plain
 
@@ -52,9 +60,6 @@ MEANING = (
 )
 
 HARMONICS_SHOWN = 4
-ORDERS_SHOWN = 4.5
-SIDEBANDS = 4
-DECADES_SHOWN = 5.0
 LINE_COLOUR = "#5b6b7b"
 
 INDICATORS_SHOWN = 400
@@ -175,25 +180,14 @@ def sideband_figure(recording: MeasuredRecording, mesh: GearMesh, pulses: ShaftP
     figure, axes = new_figure(len(harmonics), 1, height_in=1.0 + 1.3 * len(harmonics), sharex=True, sharey=True)
     top = 0.0
     for axis, harmonic in zip(axes[:, 0], harmonics, strict=True):
-        top = max(top, _draw(axis, spectrum, mesh, harmonic))
+        top = max(top, draw_mesh_line(axis, spectrum, mesh, harmonic, LINE_COLOUR))
         title = f"{channel}, mesh harmonic {harmonic}: {harmonic * teeth[0] * speed_hz:.1f} Hz"
         axis.set_title(title, loc="left", fontweight="bold")
-    axes[0, 0].set_ylim(2.0 * top / 10**DECADES_SHOWN, 4.0 * top)
-    axes[0, 0].set_xlim(-ORDERS_SHOWN, ORDERS_SHOWN)
+    frame_mesh_lines(axes[0, 0], top)
     axes[-1, 0].set_xlabel(f"Offset from the mesh line [{order_words(mesh)} of {speed_hz:.4g} Hz]")
     figure.supylabel(f"Amplitude [{recording.shown_unit(channel)}]", fontsize=10)
     figure.legend(handles=mark_handles(mesh), loc="outside upper right", ncols=3, fontsize=8)
     return figure
-
-
-def _draw(axis: Any, spectrum: OrderSpectrum, mesh: GearMesh, harmonic: int) -> float:
-    centre = harmonic * mesh.teeth[0]
-    near = np.abs(spectrum.order - centre) <= ORDERS_SHOWN
-    offset, amplitude = spectrum.order[near] - centre, spectrum.amplitude_m_s2[near]
-    axis.semilogy(offset, amplitude, color=LINE_COLOUR)
-    places = sideband_places(mesh, harmonic, SIDEBANDS)
-    draw_marks(axis, (offset, amplitude), places, 1.5 / spectrum.revolutions)
-    return float(amplitude.max(initial=1e-30))
 
 
 def write_prediction(found: Prediction, facts: ModelFacts, folder: Path) -> Path:
@@ -228,23 +222,19 @@ def write_prediction(found: Prediction, facts: ModelFacts, folder: Path) -> Path
 
 
 def _page(found: Prediction, facts: ModelFacts, indicators: dict[str, float | None], blocks: list[Block]) -> Page:
-    rows = [[Cell(label), Cell(text)] for label, text in prediction_rows(found)]
-    values = [
-        [Cell(name), Cell("undefined" if value is None else f"{value:.4g}", value=value)]
-        for name, value in list(indicators.items())[:INDICATORS_SHOWN]
-    ]
     name = found.recording.path.name
     parts = [
         Heading(f"{name}: {found.state}", 1),
         *summary_blocks([f"{capitalised(prediction_headline(found).rstrip('.'))}.", MEANING]),
-        TableBlock(("Question", "Answer"), rows, caption="What the models say about this recording.", text=True),
+        table(("Question", "Answer"), prediction_rows(found), "What the models say about this recording.", text=True),
         Heading("Sidebands"),
         FigureGrid(blocks),
         Heading("Indicators"),
-        TableBlock(
+        table(
             ("Indicator and channel", "Median"),
-            values,
-            caption=f"Median of each indicator over the pieces of the recording. {found.recording.levels_sentence}",
+            list(indicators.items())[:INDICATORS_SHOWN],
+            f"Median of each indicator over the pieces of the recording. {found.recording.levels_sentence}",
+            ".4g",
             sortable=True,
             tall=True,
         ),

@@ -25,18 +25,19 @@ from diagnostics.judging.alarms import (
     JudgedDetector,
 )
 from diagnostics.page.sentences import Sentences
-from diagnostics.page.style import WIDTH_IN, mark_handles, order_words, state_colours, styled
+from diagnostics.page.style import (
+    BEHIND_COLOUR,
+    WIDTH_IN,
+    draw_mesh_line,
+    frame_mesh_lines,
+    mark_handles,
+    order_words,
+    state_colours,
+    styled,
+)
 from diagnostics.page.wording import capitalised
 from diagnostics.records.state_classes import HEALTHY, kind_name
-from diagnostics.report.drawing import (
-    BEHIND_COLOUR,
-    DECADES_SHOWN,
-    Example,
-    ExampleSet,
-    around,
-    draw_spectrum,
-    strongest,
-)
+from diagnostics.report.drawing import Example, ExampleSet, strongest
 from diagnostics.report.indicators import in_a_sentence
 from diagnostics.report.sentences import CLASSIFIERS
 
@@ -46,8 +47,8 @@ if TYPE_CHECKING:
 MOST_SIZES = 4
 """Rows of the figure; more do not fit the first screen."""
 
-SIZE_IN, ORDERS = (5.6, 1.0, 1.0), 4.6
-"""Width, and height of the frame and of a row [in]; how far from the mesh line spectra are shown."""
+SIZE_IN = 5.6, 1.0, 1.0
+"""Width, and height of the frame and of a row [in]."""
 TITLE_SIGNS = 56
 """Of a line above a row: longer ones are cut at the edge of the figure."""
 
@@ -75,21 +76,21 @@ def first_figure(
     shown = _by_size([one for one in examples.examples if one.fault != HEALTHY and one.spectrum], areas)
     if not shown:
         return None
-    spectra = [one.spectrum for one in examples.examples if one.spectrum]
-    harmonic = strongest(spectra[0], examples.mesh)
+    harmonic = strongest(next(one.spectrum for one in examples.examples if one.spectrum), examples.mesh)
     healthy = {one.state for one in examples.examples if one.fault == HEALTHY}
     colours = state_colours(classes, healthy)
     width, frame, row = SIZE_IN
     with styled():
         figure = Figure(figsize=(width, frame + row * len(shown)), layout="constrained")
         axes = figure.subplots(len(shown), 1, squeeze=False, sharex=True, sharey=True)[:, 0]
+        behind, top = examples.healthy.spectrum if examples.healthy else None, 0.0
         for axis, one in zip(axes, shown, strict=True):
-            draw_spectrum(axis, one, examples, harmonic, colours[one.state])
+            assert one.spectrum is not None
+            drawn = draw_mesh_line(axis, one.spectrum, examples.mesh, harmonic, colours[one.state], behind)
+            top = max(top, drawn)
             title = textwrap.fill(ANSWERS.row(one.state, areas[one.record_id], best), TITLE_SIGNS)
             axis.set_title(title, loc="left", fontweight="bold", color=colours[one.state])
-        top = max(around(one, examples, harmonic)[1].max() for one in spectra)
-        axes[0].set_ylim(2.0 * top / 10**DECADES_SHOWN, 4.0 * top)
-        axes[0].set_xlim(-ORDERS, ORDERS)
+        frame_mesh_lines(axes[0], top)
         mesh_hz = harmonic * examples.teeth[0] * examples.turns_hz
         axes[-1].set_xlabel(f"Distance from mesh harmonic {harmonic} ({mesh_hz:.0f} Hz) [{order_words(examples.mesh)}]")
         figure.supylabel(f"Amplitude [{examples.unit}]", fontsize=10)

@@ -18,7 +18,7 @@ from diagnostics.judging.nested_folds import KNOWN_ACCEPTED, Nested, Stranger
 from diagnostics.judging.of_split import Referenced, Training
 from diagnostics.page.blocks import Block, Cell, Paragraph, TableBlock
 from diagnostics.page.style import new_figure
-from diagnostics.page.tables import interval_cell, linked_cell, records_link
+from diagnostics.page.tables import UNDEFINED, cell, linked_cell, records_link, table
 from diagnostics.page.wording import (
     capitalised,
     counted,
@@ -56,13 +56,12 @@ def confusion_table(
     share = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
     rows = [
         [
-            Cell(true),
+            true,
             *(_count(true, classes[k], int(counts[row, k]), share[row, k], linked=linked) for k in range(len(classes))),
         ]
         for row, true in enumerate(classes)
     ]
-    caption = CLASSIFIERS.confusion(title, kind, records, linked)
-    return TableBlock([f"True {kind}", *classes], rows, caption=caption)
+    return table([f"True {kind}", *classes], rows, CLASSIFIERS.confusion(title, kind, records, linked))
 
 
 def _count(true: str, named: str, count: int, share: float, *, linked: bool) -> Cell:
@@ -133,19 +132,14 @@ def nested_blocks(found: Nested | None, kind: str = STATE) -> list[Block]:
 
 def _strangers(found: tuple[Stranger, ...]) -> TableBlock:
     rows = [
-        [
-            Cell(one.name),
-            Cell(str(one.records), value=float(one.records)),
-            Cell(f"{one.rejected:.0%}", value=one.rejected),
-            Cell(joined([f"{name} {share:.0%}" for name, share in list(one.called.items())[:MOST_NAMES]]) or "–"),
-        ]
+        (
+            *(one.name, one.records, cell(one.rejected, ".0%")),
+            joined([f"{name} {share:.0%}" for name, share in list(one.called.items())[:MOST_NAMES]]) or None,
+        )
         for one in found
     ]
-    return TableBlock(
-        ["Class that training lacks", "Records", "Called something else", "Called"],
-        rows,
-        caption=CLASSIFIERS.strangers(KNOWN_ACCEPTED),
-    )
+    head = ["Class that training lacks", "Records", "Called something else", "Called"]
+    return table(head, rows, CLASSIFIERS.strangers(KNOWN_ACCEPTED))
 
 
 def your_scores(scores: Scores | None) -> list[Block]:
@@ -154,22 +148,15 @@ def your_scores(scores: Scores | None) -> list[Block]:
         return []
     first = scores.rows[0].name
     rows = [
-        [
-            Cell(f"{row.task}: {row.measure}"),
-            Cell(row.records),
-            Cell(TITLES.get(row.name, row.name)),
-            interval_cell(row.score),
-            Cell(f"{row.chance:.2f}", value=row.chance),
-            interval_cell(row.difference, "+.2f") if row.difference else Cell("\N{EN DASH}"),
-            Cell("less" if row.falls else "more"),
-        ]
+        (
+            *(f"{row.task}: {row.measure}", row.records, TITLES.get(row.name, row.name), row.score, row.chance),
+            *(cell(row.difference, "+.2f"), "less" if row.falls else "more"),
+        )
         for row in scores.rows
     ]
     head = ["Task", "Records", "Whose", "Score", "Chance", f"{capitalised(first)} minus this", "Better"]
-    return [
-        Paragraph(CLASSIFIERS.yours(scores)),
-        TableBlock(head, rows, caption="Scores of the tasks that the predictions answer.", sortable=True),
-    ]
+    shown = table(head, rows, "Scores of the tasks that the predictions answer.", sortable=True)
+    return [Paragraph(CLASSIFIERS.yours(scores)), shown]
 
 
 def detection_blocks(training: Training) -> list[Block]:
@@ -207,15 +194,11 @@ def detection_table(found: tuple[Judged, ...], caption: str) -> TableBlock:
     """Return AUROC of healthy against all damaged records, and against every state, by classifier."""
     states = list(dict.fromkeys(name for judged in found if judged.detection for name in judged.detection.by_class))
     rows = [
-        [
-            Cell(TITLES[judged.name]),
-            interval_cell(judged.detection.every),
-            *(interval_cell(judged.detection.by_class[state]) for state in states),
-        ]
+        (TITLES[judged.name], judged.detection.every, *(judged.detection.by_class[state] for state in states))
         for judged in found
         if judged.detection
     ]
-    return TableBlock(["Classifier", "all damage", *states], rows, caption=caption, sortable=True)
+    return table(["Classifier", "all damage", *states], rows, caption, sortable=True)
 
 
 def detector_table(found: Detectors) -> TableBlock:
@@ -236,29 +219,19 @@ def detector_table(found: Detectors) -> TableBlock:
         *(f"Nine of ten, {kind} [mm²]" for kind in kinds),
     ]
     rows = [_row(detector, states, kinds, shams=shams) for detector in every]
-    return TableBlock(head, rows, caption=CLASSIFIERS.detectors(shams), sortable=True)
+    return table(head, rows, CLASSIFIERS.detectors(shams), sortable=True)
 
 
-def _row(detector: JudgedDetector, states: list[str], kinds: list[str], *, shams: bool) -> list[Cell]:
+def _row(detector: JudgedDetector, states: list[str], kinds: list[str], *, shams: bool) -> list[object]:
     beside = "beside a healthy record" if detector.referenced and "beside" not in detector.title else ""
     basis = in_a_sentence(detector.basis, detector.gears) if detector.basis else CLASSIFIERS.picked(detector.picks)
     small = ", ".join(part for part in (basis, beside) if part)
-    none = Cell("–", value=math.nan)
     shown = {"indicator": detector.basis} if detector.basis else {}
-
-    def behind(cell: Cell, state: str) -> Cell:
-        return linked_cell(cell, state=state, **shown)
-
+    found = detector.states
     return [
-        Cell(detector.title, small),
-        Cell(str(detector.specimens), value=float(detector.specimens)),
-        *([interval_cell(detector.sham) if detector.sham else none] if shams else []),
-        interval_cell(detector.every),
-        *(
-            behind(interval_cell(detector.states[name].auc), name) if name in detector.states else none
-            for name in states
-        ),
-        *(behind(_alarms(detector, name), name) for name in states),
+        *(Cell(detector.title, small), detector.specimens, *([detector.sham] if shams else []), detector.every),
+        *(linked_cell(cell(found[name].auc), state=name, **shown) if name in found else None for name in states),
+        *(linked_cell(_alarms(detector, name), state=name, **shown) for name in states),
         *(_size_cell(detector.sizes.get(kind)) for kind in kinds),
     ]
 
@@ -266,14 +239,14 @@ def _row(detector: JudgedDetector, states: list[str], kinds: list[str], *, shams
 def _alarms(detector: JudgedDetector, name: str) -> Cell:
     found = detector.states[name].share if name in detector.states else None
     if found is None:
-        return Cell("–", value=math.nan)
+        return cell(None)
     limits = "" if math.isnan(found.low) else f"{100 * found.low:.0f} … {100 * found.high:.0f}"
     return Cell(f"{100 * found.value:.0f}", limits, 100.0 * found.value)
 
 
 def _size_cell(found: FoundSize | None) -> Cell:
     if found is None:
-        return Cell("–", value=math.nan)
+        return cell(None)
     if not found.reached:
         return Cell("not found", f"up to {rounded(found.largest_mm2)}", 1e9)
     high = rounded(found.area_mm2.high) if math.isfinite(found.area_mm2.high) else "∞"
@@ -283,24 +256,16 @@ def _size_cell(found: FoundSize | None) -> Cell:
     )
 
 
-UNDEFINED = Interval(math.nan, math.nan, math.nan)
-
-
 def comparison_table(training: Training) -> TableBlock:
     """Return the paired differences of classifiers, and whether the interval of each, by itself, excludes zero."""
     specimens = training.judged[0].scores.specimens
     rows = [
-        [
-            Cell(f"{TITLES[pair.first]} − {TITLES[pair.second]}"),
-            interval_cell(pair.macro_auroc, "+.2f"),
-            interval_cell(pair.accuracy, "+.2f"),
-            Cell(verdict(pair.macro_auroc, specimens)),
-        ]
+        (f"{TITLES[pair.first]} − {TITLES[pair.second]}", *(area, pair.accuracy), verdict(area, specimens))
         for pair in training.comparisons
+        for area in (pair.macro_auroc,)
     ]
     head = ["Paired difference", "Macro-AUROC", "Accuracy", "Interval excludes 0"]
-    caption = CLASSIFIERS.differences(FEWEST_THAT_AGREE)
-    return TableBlock(head, rows, caption=caption, sortable=True)
+    return table(head, rows, CLASSIFIERS.differences(FEWEST_THAT_AGREE), "+.2f", sortable=True)
 
 
 def verdict(difference: Interval, specimens: int) -> str:
@@ -313,48 +278,45 @@ def verdict(difference: Interval, specimens: int) -> str:
 def other_set_table(training: Training) -> TableBlock:
     """Return the scores on another set beside those on the own test specimens."""
     own = {found.name: found for found in training.judged}
-    rows = [_other_row(found, own[found.name]) for found in training.other]
+    rows = [
+        (
+            *(TITLES[there.name], there.scores.macro_auroc, own[there.name].scores.macro_auroc),
+            *(there.scores.accuracy, own[there.name].scores.accuracy, there.calibration.after),
+        )
+        for there in training.other
+    ]
     head = ["Classifier", "Macro-AUROC there", "Macro-AUROC here", "Accuracy there", "Accuracy here"]
     caption = CLASSIFIERS.other_set(training.other_name, training.other[0].scores)
-    return TableBlock([*head, "Calibration error there"], rows, caption=caption, sortable=True)
+    return table([*head, "Calibration error there"], rows, caption, sortable=True)
 
 
 def referenced_table(found: Referenced) -> TableBlock:
     """Return what classifiers reach alone and beside a healthy record of the same gearbox, on the same records."""
     rows = [
-        [
-            Cell(TITLES[judged.name]),
-            interval_cell(judged.scores.macro_auroc),
-            interval_cell(judged.scores.accuracy),
-            interval_cell(judged.detection.every if judged.detection else UNDEFINED),
-        ]
-        for judged in found.judged
+        (
+            TITLES[one.name],
+            one.scores.macro_auroc,
+            one.scores.accuracy,
+            one.detection.every if one.detection else UNDEFINED,
+        )
+        for one in found.judged
     ]
-    caption = CLASSIFIERS.referenced(found.judged[0].scores.records)
     head = ["Classifier", "Macro-AUROC [-]", "Accuracy [-]", "Damaged or not, AUROC [-]"]
-    return TableBlock(head, rows, caption=caption, sortable=True)
+    return table(head, rows, CLASSIFIERS.referenced(found.judged[0].scores.records), sortable=True)
 
 
 def referenced_pairs_table(found: Referenced) -> TableBlock:
     """Return the paired differences that a healthy record makes."""
     specimens = found.judged[0].scores.specimens
     rows = [
-        [
-            Cell(f"{TITLES[pair.first]} − {TITLES[pair.second]}"),
-            interval_cell(pair.macro_auroc, "+.2f"),
-            interval_cell(pair.detection or UNDEFINED, "+.2f"),
-            Cell(verdict(pair.macro_auroc, specimens)),
-        ]
+        (
+            f"{TITLES[pair.first]} − {TITLES[pair.second]}",
+            *(pair.macro_auroc, pair.detection or UNDEFINED, verdict(pair.macro_auroc, specimens)),
+        )
         for pair in found.comparisons
     ]
     head = ["Paired difference", "Macro-AUROC", "Damaged or not", "Interval excludes 0"]
-    caption = CLASSIFIERS.reference_worth()
-    return TableBlock(head, rows, caption=caption, sortable=True)
-
-
-def _other_row(there: Judged, here: Judged) -> list[Cell]:
-    scores = [there.scores.macro_auroc, here.scores.macro_auroc, there.scores.accuracy, here.scores.accuracy]
-    return [Cell(TITLES[there.name]), *(interval_cell(s) for s in scores), interval_cell(there.calibration.after)]
+    return table(head, rows, CLASSIFIERS.reference_worth(), "+.2f", sortable=True)
 
 
 def score_blocks(training: Training) -> list[Block]:
@@ -367,33 +329,24 @@ def score_blocks(training: Training) -> list[Block]:
 
 def score_table(training: Training) -> TableBlock:
     """Return accuracy and macro-AUROC of every classifier with intervals, and its permutation control."""
-    rows = []
-    for judged in training.judged:
-        permuted = float(judged.permuted_auroc.mean()) if judged.permuted_auroc.size else math.nan
-        rows.append(
-            [
-                Cell(TITLES[judged.name], _details(judged.name, judged.details)),
-                interval_cell(judged.scores.accuracy),
-                interval_cell(judged.scores.macro_auroc),
-                Cell(f"{permuted:.2f}" if math.isfinite(permuted) else "–", value=permuted),
-            ]
+    rows = [
+        (
+            Cell(TITLES[judged.name], _details(judged.name, judged.details)),
+            *(judged.scores.accuracy, judged.scores.macro_auroc),
+            judged.permuted_auroc.mean() if judged.permuted_auroc.size else None,
         )
-    caption = CLASSIFIERS.score_table(training.judged[0].scores.specimens)
+        for judged in training.judged
+    ]
     head = ["Classifier", "Accuracy [-]", "Macro-AUROC [-]", "Permuted labels [-]"]
-    return TableBlock(head, rows, caption=caption, sortable=True)
+    return table(head, rows, CLASSIFIERS.score_table(training.judged[0].scores.specimens), sortable=True)
 
 
 def calibration_table(training: Training) -> TableBlock:
     """Return what the probabilities of every classifier are worth without and with its temperature."""
     rows = [
-        [
-            Cell(TITLES[judged.name]),
-            Cell(f"{found.temperature:.2f}", value=found.temperature),
-            *(interval_cell(each) for each in (found.brier_before, found.brier, found.before, found.after)),
-            Cell(f"{found.honest:.2f}", value=found.honest),
-        ]
+        (TITLES[judged.name], one.temperature, one.brier_before, one.brier, one.before, one.after, one.honest)
         for judged in training.judged
-        for found in (judged.calibration,)
+        for one in (judged.calibration,)
     ]
     scores = ("Brier score", "Calibration error")
     head = [
@@ -401,8 +354,7 @@ def calibration_table(training: Training) -> TableBlock:
         *(f"{score}, {which} T [-]" for score in scores for which in ("without", "with")),
         "Calibration error if true [-]",
     ]
-    caption = CLASSIFIERS.calibration(len(training.judged[0].scores.classes))
-    return TableBlock(head, rows, caption=caption, sortable=True)
+    return table(head, rows, CLASSIFIERS.calibration(len(training.judged[0].scores.classes)), sortable=True)
 
 
 def _details(name: str, details: dict[str, Any]) -> str:

@@ -14,7 +14,6 @@ from diagnostics.page.blocks import RecordLinks
 from diagnostics.page.style import (
     PASSING,
     SLANTED,
-    draw_marks,
     new_figure,
     sideband_places,
     state_colours,
@@ -134,13 +133,6 @@ LOSSES = {
 }
 """What the labels of a set say about the loss of mesh stiffness, the better one first."""
 
-ORDERS_SHOWN = 7.0
-SIDEBANDS = 6
-DECADES_SHOWN = 5.0
-
-BEHIND_COLOUR, LOWEST = "#b9c4cd", 1e-12
-"""Of the healthy record behind a damaged one, and where its area begins, below every figure."""
-
 
 def loss_of_specimens(dataset: Dataset) -> tuple[dict[str, np.ndarray], str]:
     """Return state -> largest loss of each of its specimens, and what this loss is, from the labels of a set.
@@ -170,28 +162,6 @@ def stiffness_loss_figure(
     axis.set_ylabel("Largest stiffness loss [%]")
     axis.set_ylim(bottom=min(0.0, axis.get_ylim()[0]))
     return figure
-
-
-def around(spectrum: OrderSpectrum, examples: ExampleSet, harmonic: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return offset from a mesh harmonic [orders] and amplitude, (n,) each."""
-    centre = harmonic * examples.teeth[0]
-    near = np.abs(spectrum.order - centre) <= ORDERS_SHOWN
-    return spectrum.order[near] - centre, spectrum.amplitude_m_s2[near]
-
-
-def draw_spectrum(axis: Any, example: Example, examples: ExampleSet, harmonic: int, colour: str) -> None:
-    """Draw a record around a mesh harmonic over the healthy one, its sidebands marked."""
-    healthy = examples.healthy
-    axis.set_yscale("log")
-    if healthy and healthy.spectrum and example is not healthy:
-        offset, amplitude = around(healthy.spectrum, examples, harmonic)
-        axis.fill_between(offset, amplitude, np.full_like(amplitude, LOWEST), color=BEHIND_COLOUR, linewidth=0)
-    if example.spectrum is None:
-        return
-    offset, amplitude = around(example.spectrum, examples, harmonic)
-    axis.semilogy(offset, amplitude, color=colour)
-    places = sideband_places(examples.mesh, harmonic, SIDEBANDS)
-    draw_marks(axis, (offset, amplitude), places, 1.5 / example.spectrum.revolutions)
 
 
 @dataclass(slots=True)

@@ -6,7 +6,7 @@ import json
 import math
 import textwrap
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +22,7 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.page.blocks import Block, Cell, FigureBlock, FigureGrid, Paragraph, RecordLinks, TableBlock
 from diagnostics.page.sentences import Sentences
 from diagnostics.page.style import new_figure, state_ticks
-from diagnostics.page.tables import indicator_links, interval_cell, linked_cell
+from diagnostics.page.tables import cell, indicator_links, linked_cell, table
 from diagnostics.page.wording import percent
 from diagnostics.records.channel_quantities import ShownQuantity
 from diagnostics.records.gear_train import GearNames
@@ -313,23 +313,20 @@ def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> T
     """Return the best indicators between other specimens in their order, with the AUC of every state."""
     head = ["Indicator, channel", "Rank", "Score", *(f"AUC, {state}" for state in states), "With damage"]
     rows = [
-        [
-            term_cell(r.column, r.gears), Cell(str(rank), value=rank), interval_cell(r.score_others),
-            *(
-                _behind(interval_cell(r.others[state].separation), r.column, state=state)
-                for state in states
-            ),
-            Cell(ARROWS[r.direction]),
-        ]
+        (
+            *(term_cell(r.column, r.gears), rank, r.score_others),
+            *(_behind(cell(r.others[state].separation), r.column, state=state) for state in states),
+            ARROWS[r.direction],
+        )
         for rank, r in enumerate(found, start=1)
         if rank <= MOST_RANKED or known_column(r.column, r.gears) is None
-    ]  # fmt: skip
+    ]
     shown = f"The best {len(rows)} of {len(found)}" if len(found) > len(rows) else "Ranking"
     caption = (
         f"{shown} between different specimens: AUC against healthy with 95 % limits. The score is their mean, of an "
         "indicator that falls with damage 1 less it."
     )
-    return TableBlock(head, rows, caption=caption + BEHIND, sortable=True, tall=True)
+    return table(head, rows, caption + BEHIND, sortable=True, tall=True)
 
 
 def separation_html(rows: Mapping[str, Sequence[float]], states: tuple[str, ...], gears: GearNames) -> TableBlock:
@@ -351,20 +348,14 @@ def separation_html(rows: Mapping[str, Sequence[float]], states: tuple[str, ...]
 
 
 def _separation(value: float) -> Cell:
-    if not math.isfinite(value):
-        return Cell("–", value=math.nan)
-    return Cell(f"{value:.2f}", value=value, shade=2.0 * value - 1.0)
+    return replace(cell(value), shade=2.0 * value - 1.0)
 
 
 def best_html(best: Mapping[str, tuple[float, str]], gears: GearNames) -> TableBlock:
     """Return the best single indicator of every state."""
-    rows = [
-        [Cell(state), Cell(f"{value:.2f}", value=value), term_cell(column, gears)]
-        for state, (value, column) in best.items()
-    ]
+    rows = [(state, value, term_cell(column, gears)) for state, (value, column) in best.items()]
     caption = "Best single indicator of each state, between different specimens. The best of many is optimistic."
-    head = ["State", "AUC [-]", "Indicator and channel"]
-    return TableBlock(head, rows, caption=caption, sortable=True, text=True)
+    return table(["State", "AUC [-]", "Indicator and channel"], rows, caption, sortable=True, text=True)
 
 
 def undefined_html(found: Sequence[IndicatorResult], left_out: Mapping[str, float]) -> TableBlock:
@@ -383,12 +374,10 @@ def undefined_html(found: Sequence[IndicatorResult], left_out: Mapping[str, floa
         if missing > 1e-9:
             known = known_column(result.column, result.gears)
             reason = known.entry.undefined if known else "its function returned nan"
-            rows.append(
-                [term_cell(result.column, result.gears), Cell(f"{100.0 * missing:.1f}", value=missing), Cell(reason)]
-            )
+            rows.append((term_cell(result.column, result.gears), 100.0 * missing, reason))
     head = ["Indicator and channel", "Undefined [%]", "When"]
     caption = "Indicators that are undefined in some of the records."
-    return TableBlock(head, rows, caption=caption, sortable=True, tall=True, text=True)
+    return table(head, rows, caption, ".1f", sortable=True, tall=True, text=True)
 
 
 def definition_html(held: Collection[str]) -> TableBlock:
@@ -404,14 +393,14 @@ def definition_html(held: Collection[str]) -> TableBlock:
         "Source",
     ]
     rows = [
-        [
+        (
             Cell(d.name, name=f"term-{d.name}", hint=f"{d.formula}; from {d.signal}"),
-            *(Cell(t) for t in (d.title, d.signal, d.formula, d.unit, d.known, d.undefined, d.source)),
-        ]
+            *(d.title, d.signal, d.formula, d.unit, d.known, d.undefined, d.source),
+        )
         for d in ALL
         if any(d.is_taken_of(quantity) for quantity in held)
     ]
-    return TableBlock(head, rows, caption="Definitions of the indicators.", tall=True, text=True)
+    return table([*head, "Undefined when", "Source"], rows, "Definitions of the indicators.", tall=True, text=True)
 
 
 CURVES_SHOWN = 6

@@ -38,7 +38,7 @@ from diagnostics.page.blocks import (
 from diagnostics.page.provenance import origin_sentence, provenance
 from diagnostics.page.sentences import Sentences
 from diagnostics.page.style import WIDTH_IN, png_bytes, styled
-from diagnostics.page.tables import interval_cell
+from diagnostics.page.tables import cell, table
 from diagnostics.page.template import write_page
 from diagnostics.scoring.prediction_file import CLASSIFIER, RECORD, SPLIT, write_predictions
 from diagnostics.scoring.remaining_life import COLUMNS
@@ -310,32 +310,16 @@ def shown_gearboxes(found: Inspections) -> list[int]:
 def detection_table(detected: Mapping[str, FailureDetection]) -> TableBlock:
     """Return the table of what sees damage, and when."""
     rows = [
-        [
-            Cell(name),
-            Cell(f"{one.detected} of {one.gearboxes}", value=one.detected),
-            _median(100.0 * one.share),
-            _median(one.left_h),
-            Cell(str(one.early)),
-        ]
+        (name, Cell(f"{one.detected} of {one.gearboxes}", value=one.detected), 100.0 * one.share, one.left_h, one.early)
         for name, one in detected.items()
     ]
-    head = [
-        "What is watched",
-        "Gearboxes detected",
-        "Worst tooth then [%]",
-        "Hours left then [h]",
-        "Detected before any pit",
-    ]
-    return TableBlock(head, rows, caption=LIVES.first_detection())
+    head = ["What is watched", "Gearboxes detected", "Worst tooth then [%]", "Hours left then [h]"]
+    return table([*head, "Detected before any pit"], rows, LIVES.first_detection(), ".1f")
 
 
 def life_block(unit: UnitLife) -> FigureBlock:
     """Return the figure of a gearbox with its caption."""
     return FigureBlock(png_bytes(life_figure(unit)), f"Gearbox {unit.specimen}. {LIVES.life()}")
-
-
-def _median(value: float) -> Cell:
-    return Cell(f"{value:.1f}" if np.isfinite(value) else "none", value=value)
 
 
 SEED = 0
@@ -497,42 +481,26 @@ def _answer(
 def _errors(found: Inspections, scores: Mapping[str, LifeScores]) -> TableBlock:
     third = found.median_life_h / BINS
     bins = ("all", f"below {third:.3g} h", f"{third:.3g} to {2 * third:.3g} h", f"from {2 * third:.3g} h")
-    rows = [
-        [Cell(name), *(interval_cell(found, ".1f") for found in (*one.rmse_h, *one.mae_h))]
-        for name, one in scores.items()
-    ]
+    rows = [(name, *one.rmse_h, *one.mae_h) for name, one in scores.items()]
     head = ["What is known", *(f"{error} [h], {each}" for error in ("RMSE", "MAE") for each in bins)]
-    return TableBlock(head, rows, caption=LIVES.errors())
+    return table(head, rows, LIVES.errors(), ".1f")
 
 
 def _quantiles(scores: Mapping[str, LifeScores]) -> TableBlock:
-    rows = [
-        [
-            Cell(name),
-            *(Cell(f"{loss:.2f}", value=loss) for loss in one.pinball_h),
-            interval_cell(one.coverage),
-            Cell(f"{one.nasa:.1f}", value=one.nasa),
-        ]
-        for name, one in scores.items()
-    ]
-    head = [
-        "What is known",
-        *(f"Pinball loss [h], {q:g}" for q in QUANTILES),
-        "Coverage of 80 % intervals [-]",
-        "NASA score, mean [-]",
-    ]
-    return TableBlock(head, rows, caption=LIVES.quantiles())
+    rows = [(name, *one.pinball_h, one.coverage, cell(one.nasa, ".1f")) for name, one in scores.items()]
+    losses = (f"Pinball loss [h], {q:g}" for q in QUANTILES)
+    head = ["What is known", *losses, "Coverage of 80 % intervals [-]", "NASA score, mean [-]"]
+    return table(head, rows, LIVES.quantiles())
 
 
 def _leaks(leaks: Sequence[Leak]) -> TableBlock:
     rows = [
-        [
-            Cell(leak.clue),
-            Cell(f"{leak.age_rmse_h - leak.gain_h:.1f}", value=leak.age_rmse_h - leak.gain_h),
+        (
+            *(leak.clue, leak.age_rmse_h - leak.gain_h),
             Cell(f"{leak.gain_h:.1f}", f"at least {leak.least_gain_h:.1f}", leak.gain_h),
-            Cell("leaks" if leak.found else "tells nothing"),
-        ]
+            "leaks" if leak.found else "tells nothing",
+        )
         for leak in leaks
     ]
     head = ["Beside age", "RMSE [h]", f"Lower than by age alone ({leaks[0].age_rmse_h:.1f} h) by [h]", "Verdict"]
-    return TableBlock(head, rows, caption=LIVES.leaks())
+    return table(head, rows, LIVES.leaks(), ".1f")

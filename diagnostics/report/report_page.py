@@ -34,7 +34,7 @@ from diagnostics.page.blocks import (
     note_blocks,
 )
 from diagnostics.page.provenance import origin_sentence, provenance
-from diagnostics.page.tables import records_link, state_links
+from diagnostics.page.tables import cell, records_link, state_links, table
 from diagnostics.page.wording import capitalised
 from diagnostics.records.state_classes import CLASS, ordered_states
 from diagnostics.report.answer import ANSWERS, answer_sentences
@@ -93,17 +93,15 @@ def wrong_records_table(training: Training, matrix: FeatureMatrix) -> TableBlock
     true = f"True {training.split.kind}"
     head = ["Record", "Gearbox", "Area [mm²]", true, *(capitalised(TITLES[name]) for name in said)]
     caption = CLASSIFIERS.named_wrongly(int(rows.size), labels[CLASS].size, MOST_RECORDS)
-    return TableBlock(head, [_record(labels, row, said) for row in order], caption=caption, sortable=True, tall=True)
+    return table(head, [_record(labels, row, said) for row in order], caption, sortable=True, tall=True)
 
 
-def _record(labels: dict[str, np.ndarray], row: int, said: dict[str, np.ndarray]) -> list[Cell]:
-    number, area = int(labels["record_id"][row]), float(labels["damaged_area_mm2"][row])
+def _record(labels: dict[str, np.ndarray], row: int, said: dict[str, np.ndarray]) -> list[object]:
+    number, true = int(labels["record_id"][row]), labels[CLASS][row]
     return [
         Cell(str(number), value=float(number), link=records_link(record=number), hint="show this record"),
-        Cell(str(labels["specimen_id"][row]), value=float(labels["specimen_id"][row])),
-        Cell(f"{area:.3g}", value=area),
-        Cell(str(labels[CLASS][row])),
-        *(Cell(str(names[row]), shade=0.3 if names[row] != labels[CLASS][row] else None) for names in said.values()),
+        *(labels["specimen_id"][row], cell(float(labels["damaged_area_mm2"][row]), ".3g"), true),
+        *(Cell(str(names[row]), shade=0.3 if names[row] != true else None) for names in said.values()),
     ]
 
 
