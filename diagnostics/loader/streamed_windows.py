@@ -80,11 +80,13 @@ class StreamedWindows(IterableDataset[tuple[torch.Tensor, Any]]):  # type: ignor
             raise UsageError(f"settings: received the quantity {chosen.quantity!r}; allowed: {held}, or None")
         self._given = 0
         self._steps = steps
+        self._reader: object = None
 
     def __iter__(self) -> Iterator[tuple[torch.Tensor, Any]]:
         """Yield windows from the present place on."""
         if get_worker_info() is not None:
             raise UsageError("num_workers: the stream has workers of its own; give DataLoader num_workers=0")
+        self._reader = reader = object()
         for records in self.stream.blocks():
             windows = [one for record in records if record is not None for one in self._windows(record)]
             if not windows:
@@ -103,6 +105,11 @@ class StreamedWindows(IterableDataset[tuple[torch.Tensor, Any]]):  # type: ignor
                     self._given += 1
                     x, y = windows[place]
                     yield torch.from_numpy(x.copy()), y
+                    if self._reader is not reader:
+                        raise UsageError(
+                            "the windows: received another loop or another place while this loop ran; allowed: one "
+                            "loop at a time. Begin a loop after the place was loaded"
+                        )
             self._given = 0
 
     def _windows(self, record: Mapping[str, Any]) -> Iterator[tuple[np.ndarray, Any]]:
@@ -124,7 +131,7 @@ class StreamedWindows(IterableDataset[tuple[torch.Tensor, Any]]):  # type: ignor
         Raises
         ------
         UsageError
-            If they had another stream, other windows or another reuse.
+            If they had another stream, other windows, another reuse or a target of another name.
         """
         if not isinstance(state, Mapping):
             raise UsageError(f"state: received {state!r}; allowed: what state_dict returned")
@@ -136,11 +143,12 @@ class StreamedWindows(IterableDataset[tuple[torch.Tensor, Any]]):  # type: ignor
         if type(given) is not int or given < 0:
             raise UsageError(f"given: received {given!r}; allowed: whole numbers from 0")
         self.stream.load_state_dict(state.get("stream"))
-        self._given = given
+        self._given, self._reader = given, None
 
     def _facts(self) -> dict[str, Any]:
-        chosen = self.settings
+        chosen, target = self.settings, self.target
         return {
             "revolutions": chosen.revolutions, "hop_revolutions": chosen.hop_revolutions,
             "samples_per_revolution": self._steps, "reuse": self.reuse, "channels": list(self.columns),
+            "target": f"{target.__module__}.{getattr(target, '__qualname__', type(target).__qualname__)}",
         }  # fmt: skip

@@ -42,6 +42,7 @@ from siggen.sensors.registry import SensorSection
 BLOCK = 20
 """Specimens per block in which the splits are met exactly."""
 MOST_SPECIMENS = 10_000_000
+MOST_REPEATS = 1_000_000
 
 
 SHARES = "of every 20 gearboxes (or pairs), for fitting, for choosing and for judging"
@@ -105,7 +106,7 @@ class Config(Section):
     mesh_harmonics: Annotated[Whole, Field(ge=1)] = Field(
         default=5, description="highest mesh harmonic that the sampling rate must carry at the highest speed"
     )
-    repeats: Annotated[Whole, Field(ge=1, le=1_000_000)] = Field(
+    repeats: Annotated[Whole, Field(ge=1, le=MOST_REPEATS)] = Field(
         default=1, description="records per state and operating point"
     )
     splits: Splits = Field(default=Splits(), description="split of every 20 specimens")

@@ -30,15 +30,24 @@ class SimulatedRows:
 
 @dataclass(frozen=True, slots=True)
 class RowSimulation:
-    """What makes rows of a set; carries to the workers once what simulates it."""
+    """What makes rows of a set; carries to the workers once what simulates it.
+
+    `simulate` gives so many renewals behind each record.
+    """
 
     columns: SetColumns
     simulate: Simulate
+    renewals: int = 0
 
     def __call__(self, records: Sequence[int]) -> SimulatedRows:
         """Return the rows of some records of one gearbox at once."""
         (only,) = self.blocks(records, max(1, len(records)))
         return only
+
+    def renewed(self, records: Sequence[int]) -> tuple[SimulatedRows, ...]:
+        """Return the rows of some records of one gearbox, and behind them those of each of their renewals."""
+        results, each = list(self._results(records)), 1 + self.renewals
+        return tuple(self._rows(results[renewal::each]) for renewal in range(each))
 
     def blocks(self, records: Sequence[int], size: int = BLOCK_RECORDS) -> Iterator[SimulatedRows]:
         """Yield rows of the records of one gearbox, some at a time.
@@ -63,8 +72,9 @@ class RowSimulation:
     def _results(self, records: Sequence[int]) -> Iterator[SimulatedRecord | RecordFailure]:
         """Yield a record or a failure for every id; a row that is not finite is a failure."""
         results = self._raw(records)
-        for place, record_id in enumerate(records):
-            result = self._next(results, records[place:])
+        given = [record_id for record_id in records for _ in range(1 + self.renewals)]
+        for place, record_id in enumerate(given):
+            result = self._next(results, given[place:])
             if isinstance(result, SimulatedRecord) and (reason := non_finite(result)):
                 result = RecordFailure(record_id, "not_finite", reason)
             yield result

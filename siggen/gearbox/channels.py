@@ -10,6 +10,7 @@ import numpy as np
 
 from siggen.arrays import ComplexArray, FloatArray
 from siggen.config import Config
+from siggen.config.config import MOST_SPECIMENS
 from siggen.keys.number import Number, constant
 from siggen.noise.source import Source
 from siggen.seeding import Stream, named_generator, named_uniforms
@@ -20,6 +21,9 @@ from siggen.sensors.quantity import Quantity
 from siggen.sensors.response_text import decoded_response
 from siggen.sensors.sensor import AxisDraws, SensorBase
 from siggen.sensors.transducer import Transducer
+
+MOST_RENEWALS = 400
+"""So all keys of sensors are below 2^32: one word of a seed, which no two others look like."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +111,21 @@ def drawn_channels(config: Config, specimen_id: int, sensors: Sequence[SensorBas
                 sources=sensor.sources,
                 path=_way(sensor.through, sensor.weights(axis, draw), uniform, pressed),
             )
+
+
+def sensors_of(specimen_id: int, renewal: int) -> int:
+    """Return the key of the sensors of a gearbox, or of those that a renewal puts in their place.
+
+    Those are of a gearbox beyond all that a set may have.
+    """
+    return specimen_id + renewal * MOST_SPECIMENS
+
+
+def renewed_channels(config: Config, specimen_id: int, renewal: int) -> tuple[DrawnChannel, ...]:
+    """Return the channels of a gearbox by its own configuration, drawn anew at their old places."""
+    key = sensors_of(specimen_id, renewal)
+    uniform = named_uniforms(config.seed, Stream.SENSOR, key)
+    return tuple(drawn_channels(config, key, [one.drawn(uniform) for one in config.sensors]))
 
 
 def _named(seed: int, specimen_id: int, name: str) -> np.random.Generator:

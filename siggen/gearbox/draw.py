@@ -12,7 +12,7 @@ from siggen.config.config import rated_nm
 from siggen.config.machine import Stage, turned
 from siggen.config.planetary import RING, set_of
 from siggen.gearbox.background import drawn_background
-from siggen.gearbox.channels import drawn_channels
+from siggen.gearbox.channels import drawn_channels, renewed_channels
 from siggen.gearbox.configured import gearbox_config, gearbox_life, state_config
 from siggen.gearbox.drive import drawn_unbalance, drawn_variation
 from siggen.gearbox.drivetrain import drawn_dynamics, drawn_gears
@@ -89,6 +89,7 @@ def _drawn(config: Config, own: Config, specimen_id: int) -> Specimen:
         unbalance=drawn_unbalance(dynamics, own.names, supports),
         background=drawn_background(own, specimen_id),
         channels=tuple(drawn_channels(own, specimen_id, sensors)),
+        renewed=partial(renewed_channels, own, specimen_id),
         points=points,
         rated_nm=rated_nm(own.dynamics, own.operating_points),
         damages=config.damages,

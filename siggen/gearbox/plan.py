@@ -13,6 +13,8 @@ from functools import lru_cache
 from itertools import chain, pairwise
 from typing import overload
 
+from siggen.config.config import MOST_REPEATS
+from siggen.gearbox.channels import sensors_of
 from siggen.gearbox.design import SetDesign, expect_design
 from siggen.seeding import Stream, generator
 from siggen.sensors.converter import FROM_NOISE
@@ -45,7 +47,7 @@ MANY_QUANTITIES = 30
 
 @dataclass(frozen=True, slots=True)
 class PlannedRecord:
-    """Where one record stands in the set."""
+    """Where one record stands in the set; a `renewal` above 0 is it once more, with other noise and sensors."""
 
     record_id: int
     specimen_id: int
@@ -53,11 +55,22 @@ class PlannedRecord:
     operating_point_id: int
     repeat: int
     split: str
+    renewal: int = 0
 
     @property
     def owner(self) -> tuple[int, int, int, int]:
-        """Keys of what is drawn per record."""
+        """Keys of what is drawn per record, and moves its gearbox."""
         return self.specimen_id, self.state_id, self.operating_point_id, self.repeat
+
+    @property
+    def noise_owner(self) -> tuple[int, int, int, int]:
+        """Keys of noise that moves nothing: of a renewal those of a repeat beyond all that a set may have."""
+        return *self.owner[:3], self.repeat + self.renewal * MOST_REPEATS
+
+    @property
+    def sensors_of(self) -> int:
+        """Key of what is drawn of the sensors: of a renewal that of a gearbox beyond all that a set may have."""
+        return sensors_of(self.specimen_id, self.renewal)
 
 
 @dataclass(frozen=True, slots=True)

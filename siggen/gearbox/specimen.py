@@ -130,6 +130,7 @@ class Specimen:
     unbalance : of its shafts; None: balanced
     background : what its machine does beside its meshing teeth
     channels : of its sensors
+    renewed : number of a renewal -> the same with other gains, mounts and curves, where they were
     points : at which it is measured
     rated_nm : torque at which its motor slips as the file says
     damages : laws of the damage of all states of its set
@@ -153,6 +154,7 @@ class Specimen:
     unbalance: UnbalanceLevels | None
     background: DrawnBackground | None
     channels: tuple[DrawnChannel, ...]
+    renewed: Callable[[int], tuple[DrawnChannel, ...]] = field(compare=False)
     points: tuple[OperatingPoint, ...]
     rated_nm: float
     damages: tuple[Fault, ...]

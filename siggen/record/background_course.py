@@ -105,5 +105,5 @@ def course_at(
         composite_roughness_m(specimen.law.friction)[0],
         named_uniforms(specimen.seed, Stream.BACKGROUND, record.specimen_id),
         lambda name: named_generator(specimen.seed, Stream.BACKGROUND, record.specimen_id, name=name),
-        lambda name: named_generator(specimen.seed, Stream.BACKGROUND_NOISE, *record.owner, name=name),
+        lambda name: named_generator(specimen.seed, Stream.BACKGROUND_NOISE, *record.noise_owner, name=name),
     )

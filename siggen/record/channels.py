@@ -32,7 +32,7 @@ from siggen.sensors.transducer import Running
 
 def channel_draws(seed: int, record: PlannedRecord, channel: str, *, levelled: bool) -> Draws:
     """Return where the numbers of a channel come from; noise that is `levelled` has that of the gearbox."""
-    owner, levels = record.owner, named_uniforms(seed, Stream.BACKGROUND, record.specimen_id)
+    owner, levels = record.noise_owner, named_uniforms(seed, Stream.BACKGROUND, record.sensors_of)
     return Draws(
         named_uniforms(seed, Stream.PATH, record.specimen_id),
         named_uniforms(seed, Stream.NOISE, *owner),
@@ -45,7 +45,7 @@ def white_noise(
     seed: int, record: PlannedRecord, channel: DrawnChannel, draws: Draws
 ) -> tuple[np.random.Generator, float | None]:
     """Return the generator of a channel's white noise, and its floor; None without one."""
-    rng = named_generator(seed, Stream.NOISE, *record.owner, name=channel.name)
+    rng = named_generator(seed, Stream.NOISE, *record.noise_owner, name=channel.name)
     floor, u = channel.noise_floor, draws.level("noise", rng)
     return rng, None if floor is None else at(floor, u)
 
@@ -300,7 +300,7 @@ def _running(specimen: Specimen, record: PlannedRecord, rotation: Rotation) -> R
         specimen.points[record.operating_point_id].torque_nm,
         _base_radii_m(specimen),
         {channel.name: channel.place for channel in specimen.channels},
-        2.0 * np.pi * named_uniforms(specimen.seed, Stream.NOISE, *record.owner)("line.phase"),
+        2.0 * np.pi * named_uniforms(specimen.seed, Stream.NOISE, *record.noise_owner)("line.phase"),
     )
 
 

@@ -93,7 +93,7 @@ def _run_motion(specimen: Specimen, _: tuple[int, ...]) -> None:
     # Tables of the same types without solving any contact: springs, as the law linear has them.
     springs = replace(specimen, law=replace(specimen.law, kind=LINEAR))
     state = specimen_state(springs, 0)
-    simulated(specimen, specimen_instrument(specimen), state, PlannedRecord(0, 0, 0, 0, 0, ""))
+    list(simulated(specimen, specimen_instrument(specimen), state, PlannedRecord(0, 0, 0, 0, 0, "")))
     # what a label of damaged teeth needs besides
     force_n = mean_force_n(state.pair, specimen.points[0])
     state.static.stiffness_n_per_m(force_n * state.pair.pinion.base_radius_m, np.linspace(0.0, 1.0, 2))

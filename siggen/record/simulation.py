@@ -17,6 +17,7 @@ from siggen.motion.motion import Motion, both_settled_s
 from siggen.motion.response import (
     Piece,
     Response,
+    ResponsePieces,
     ResponseStream,
     SampleGrid,
     Wanted,
@@ -122,9 +123,13 @@ def _settle_s(specimen: Specimen, motion: Motion) -> float:
 
 
 def simulated(
-    specimen: Specimen, instrument: Instrument, state: SpecimenState, planned: PlannedRecord
-) -> SimulatedRecord:
-    """Return one record of a specimen in a state.
+    specimen: Specimen,
+    instrument: Instrument,
+    state: SpecimenState,
+    planned: PlannedRecord,
+    others: Sequence[RecordedMachine] = (),
+) -> Iterator[SimulatedRecord]:
+    """Yield one record of a specimen in a state, and its renewals: what `others`, its sensors anew, made of its motion.
 
     Raises
     ------
@@ -135,7 +140,8 @@ def simulated(
     with refused_as("outside_model"), stage("inputs"):
         specimen, state = at_point(specimen, state, planned)
         driven = state_drive(specimen, state, planned)
-    seen = {motion for channel in instrument.channels for motion in channel.motions}
+    measuring = instrument, *(other.instrument for other in others)
+    seen = {motion for one in measuring for channel in one.channels for motion in channel.motions}
     if with_internals:
         seen |= {motion for motion in state.mesh.structure.motions if specimen.stores(acceleration_name(motion))}
     with refused_as("outside_model"):
@@ -143,13 +149,14 @@ def simulated(
     response: _RefusedPieces | StreamedInternals = _RefusedPieces(stream)
     if with_internals:
         response = StreamedInternals(specimen, stream, response)
+    kept = _KeptPieces(response) if others else response
     with stage("sensing"):
-        channels, channel_labels = measured_channels(specimen, planned, driven.rotation, response, instrument)
+        channels, channel_labels = measured_channels(specimen, planned, driven.rotation, kept, instrument)
     sampling, point = specimen.sampling, specimen.points[planned.operating_point_id]
     ends_rad = driven.rotation.angle_rad(np.array([0, sampling.samples - 1]) / sampling.fs_hz)
     with refused_as("outside_model"):
         operating = operating_labels(state.pair, point, ends_rad, sampling, state.static)
-    labels = planetary_labels(specimen, {
+    of_motion = {
         **state.labels,
         **operating,
         **stage_operating_labels(specimen, operating, [one.static for one in state.behind]),
@@ -159,13 +166,20 @@ def simulated(
         "start_angle_rad": float(ends_rad[0]),
         "contact_loss_share": response.contact_loss_share,
         "status": "ok",
-        **channel_labels,
-    }, state.at_rest)  # fmt: skip
+    }
     internals = None
     if isinstance(response, StreamedInternals):
         internals = response.quantities()
     tacho_s = driven.rotation.tacho_s(sampling.samples / sampling.fs_hz)
-    return SimulatedRecord(planned, labels, channels, tacho_s, internals)
+    labels = planetary_labels(specimen, {**of_motion, **channel_labels}, state.at_rest)
+    yield SimulatedRecord(planned, labels, channels, tacho_s, internals)
+    for number, other in enumerate(others, start=1):
+        renewal = replace(planned, renewal=number)
+        measured = replace(specimen, channels=other.specimen.channels)
+        with stage("sensing"):
+            channels, channel_labels = measured_channels(measured, renewal, driven.rotation, kept, other.instrument)
+        labels = planetary_labels(specimen, {**of_motion, **channel_labels}, state.at_rest)
+        yield SimulatedRecord(renewal, labels, channels, tacho_s, internals)
 
 
 class _RefusedPieces:
@@ -190,22 +204,51 @@ class _RefusedPieces:
             yield piece
 
 
-def simulate_specimen(gearbox: Specimen, records: Sequence[PlannedRecord]) -> Iterator[SimulatedRecord | RecordFailure]:
-    """Yield records of one gearbox in their order, simulated or failed; stiffness tables are built once per state."""
+class _KeptPieces:
+    """Pieces that are kept when they were taken, and then given as often as asked for."""
+
+    def __init__(self, response: ResponsePieces) -> None:
+        self._response = response
+        self._kept: list[Piece] = []
+        self.motions, self.places, self.before = response.motions, response.places, response.before
+        self.readings = response.readings
+
+    def pieces(self) -> Iterator[Piece]:
+        if not self._kept:
+            for piece in self._response.pieces():
+                self._kept.append(piece)
+                yield piece
+            return
+        yield from self._kept
+
+
+def simulate_specimen(
+    gearbox: Specimen, records: Sequence[PlannedRecord], renewals: int = 0
+) -> Iterator[SimulatedRecord | RecordFailure]:
+    """Yield records of one gearbox in their order, simulated or failed; stiffness tables are built once per state.
+
+    Each is followed by so many renewals of it, or failures.
+    """
     machine_of, columns = machines(gearbox), label_columns(gearbox)
     named = {column.label: column.name for column in columns if column.label}
     state_of = lru_cache(maxsize=1)(lambda state_id: _staged_state(machine_of(state_id), state_id))
     loaded = lru_cache(maxsize=2)(lambda state_id, point_id: machine_of(state_id).at_point(point_id))
+    other = lru_cache(maxsize=2)(
+        lambda state_id, point_id: [loaded(state_id, point_id).renewed(i + 1) for i in range(renewals)]
+    )
     for record in records:
+        given = 0
         try:
             drawn = gearbox.states[record.state_id]
-            machine = loaded(None if drawn.changed is None else record.state_id, record.operating_point_id)
-            made = simulated(machine.specimen, machine.instrument, state_of(record.state_id), record)
-            labels = {**made.labels, **machine.labels, **{one.name: value for one, value in drawn.labels.items()}}
-            labels |= {"faulty_gear": gearbox.names.gear(str(labels["faulty_gear"]))}
-            yield replace(made, labels={named.get(label, label): value for label, value in labels.items()})
+            place = None if drawn.changed is None else record.state_id, record.operating_point_id
+            machine, state = loaded(*place), state_of(record.state_id)
+            for made in simulated(machine.specimen, machine.instrument, state, record, other(*place)):
+                labels = {**made.labels, **machine.labels, **{one.name: value for one, value in drawn.labels.items()}}
+                labels |= {"faulty_gear": gearbox.names.gear(str(labels["faulty_gear"]))}
+                given += 1
+                yield replace(made, labels={named.get(label, label): value for label, value in labels.items()})
         except SolverFailure as failure:
-            yield RecordFailure(record.record_id, failure.status, failure.reason)
+            yield from [RecordFailure(record.record_id, failure.status, failure.reason)] * (1 + renewals - given)
 
 
 def _staged_state(machine: RecordedMachine, state_id: int) -> SpecimenState:

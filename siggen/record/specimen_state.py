@@ -214,6 +214,12 @@ class RecordedMachine:
         with stage("sensing"):
             return replace(self, specimen=specimen, instrument=specimen_instrument(specimen))
 
+    def renewed(self, renewal: int) -> RecordedMachine:
+        """Return the machine with other sensors at the same places."""
+        specimen = replace(self.specimen, channels=self.specimen.renewed(renewal))
+        with stage("sensing"):
+            return replace(self, specimen=specimen, instrument=specimen_instrument(specimen))
+
 
 def machines(gearbox: Specimen) -> Callable[[int | None], RecordedMachine]:
     """Return state -> the machine of a gearbox in that state; that of states that change nothing (None) is kept."""

@@ -27,8 +27,10 @@ def set_columns(design: SetDesign, quantities: Sequence[Column] = ()) -> SetColu
     return columns_of_gearbox(design.first(), design.identity, quantities)
 
 
-def simulated(design: SetDesign, record_ids: Sequence[int]) -> Iterator[SimulatedRecord | RecordFailure]:
-    """Return records of one gearbox in their order, each simulated when it is asked for.
+def simulated(
+    design: SetDesign, record_ids: Sequence[int], renewals: int = 0
+) -> Iterator[SimulatedRecord | RecordFailure]:
+    """Return records of one gearbox in their order, each simulated when it is asked for, and its renewals behind it.
 
     Raises
     ------
@@ -44,8 +46,9 @@ def simulated(design: SetDesign, record_ids: Sequence[int]) -> Iterator[Simulate
         with refused_as("outside_model"), stage("plan"):
             gearbox = design.gearbox(numbers[0])
     except SolverFailure as failure:
-        return iter([RecordFailure(record.record_id, failure.status, failure.reason) for record in records])
-    return simulate_specimen(gearbox, records)
+        each = [RecordFailure(record.record_id, failure.status, failure.reason) for record in records]
+        return iter([one for one in each for _ in range(1 + renewals)])
+    return simulate_specimen(gearbox, records, renewals)
 
 
 def damage_rows(design: SetDesign, record_ids: Sequence[int]) -> Iterator[dict[str, object]]:

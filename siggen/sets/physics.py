@@ -55,12 +55,13 @@ class Physics:
     life_rows: Callable[[SetDesign, int], Mapping[str, Sequence[Mapping[str, object]]]] = _no_life
     damage_sizes: Callable[[SetDesign, int], Mapping[str, Mapping[str, object]]] = _no_sizes
 
-    def simulation(self, design: SetDesign) -> RowSimulation:
+    def simulation(self, design: SetDesign, renewals: int = 0) -> RowSimulation:
         """Return what makes rows of a set, with its columns, those of `internals/` too where it stores some."""
         from siggen.sets.drawn import set_columns
 
         columns = set_columns(design, () if design.stored is None else self.quantities(design))
-        return RowSimulation(columns, partial(self.simulate, design))
+        renewing = {"renewals": renewals} if renewals else {}
+        return RowSimulation(columns, partial(self.simulate, design, **renewing), renewals)
 
 
 def physics() -> Physics:

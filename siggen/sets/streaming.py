@@ -2,7 +2,7 @@
 
 Gearboxes are counted as those of a set, so a streamed record is the one that a set with as many gearboxes holds. So
 many gearboxes at a time are mixed: their records come in an order that seed and place alone decide, whoever simulates
-which of them first.
+which of them first. A renewal is a record once more: its gearbox moves as it did, and noise and sensors are others.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from siggen.dataset.environment import environment
 from siggen.dataset.reading import as_record
 from siggen.dataset.simulated_rows import SimulatedRows
 from siggen.errors import EngineError, UsageError
+from siggen.gearbox.channels import MOST_RENEWALS
 from siggen.gearbox.design import SetDesign, expect_design
 from siggen.gearbox.plan import record_ids_of
 from siggen.record.compilation import run_part
@@ -35,8 +36,9 @@ MIXED = 16
 class RecordStream:
     """Endless records; iterate it. What `siggen.stream` returns.
 
-    A record is a mapping as `siggen.open(...).record` returns it: labels, channels as float32 (n,), `tacho_s`. Leaving
-    the loop ends the workers; iterating again goes on behind what was yielded.
+    A record is a mapping as `siggen.open(...).record` returns it: labels, channels as float32 (n,), `tacho_s`; besides,
+    `renewal` counts from 0, the record of the set itself. Leaving the loop ends the workers; iterating again goes on
+    behind what was yielded.
 
     Attributes
     ----------
@@ -45,10 +47,11 @@ class RecordStream:
     """
 
     def __init__(
-        self, design: SetDesign, first_gearbox: int, seed: int, mixed: int, share: tuple[int, int],
+        self, design: SetDesign, first_gearbox: int, seed: int, mixed: int, renewals: int, share: tuple[int, int],
         workers: int | None, executor: Executor | str | None,
     ) -> None:  # fmt: skip
-        self.design, self.first_gearbox, self.seed, self.mixed = design, first_gearbox, seed, mixed
+        self.design, self.first_gearbox, self.seed = design, first_gearbox, seed
+        self.mixed, self.renewals = mixed, renewals
         self.rank, self.ranks = share
         self.failures: dict[int, RecordFailure] = {}
         self._workers = workers_of(executor, workers)
@@ -73,6 +76,14 @@ class RecordStream:
                     if self._reader is not reader:
                         break
 
+    def __repr__(self) -> str:
+        size = self.mixed * self.design.records_per_specimen * (1 + self.renewals)
+        first = self._first(self._passed // size)
+        return (
+            f"<stream of {self.design.name}: {self._passed} records given, next those of gearboxes {first} to "
+            f"{first + self.mixed - 1}>"
+        )
+
     def blocks(self) -> Iterator[list[dict[str, Any] | None]]:
         """Yield the records of so many mixed gearboxes in their order, from the block of the present place on.
 
@@ -88,9 +99,9 @@ class RecordStream:
         self._reader = reader = object()
         physics = contents.physics()
         self._compile(physics)
-        size = self.mixed * self.design.records_per_specimen
+        size = self.mixed * self.design.records_per_specimen * (1 + self.renewals)
         block = self._passed // size
-        made: dict[int, SimulatedRows] = {}
+        made: dict[int, tuple[SimulatedRows, ...]] = {}
         first = block * self.mixed
 
         def room() -> bool:
@@ -99,8 +110,8 @@ class RecordStream:
 
         tasks = (self._record_ids(number) for number in count(first))
         ahead = 0 if self._workers.name == "serial" else self.mixed
-        simulation = physics.simulation(self.design)
-        with closing(results(self._workers, simulation, tasks, room=room, ahead=ahead)) as answers:
+        simulation = physics.simulation(self.design, self.renewals)
+        with closing(results(self._workers, simulation.renewed, tasks, room=room, ahead=ahead)) as answers:
             while True:
                 wanted = range(block * self.mixed, (block + 1) * self.mixed)
                 while not all(number in made for number in wanted):
@@ -145,30 +156,36 @@ class RecordStream:
         return {
             "configuration": self.design.identity, "sources": environment()["sources"],
             "first_gearbox": self.first_gearbox, "seed": self.seed,
-            "mixed": self.mixed, "rank": self.rank, "ranks": self.ranks,
+            "mixed": self.mixed, "renewals": self.renewals, "rank": self.rank, "ranks": self.ranks,
         }  # fmt: skip
 
     def _record_ids(self, number: int) -> range:
         """Return the records of the gearbox with a number of this share's."""
         block, place = divmod(number, self.mixed)
-        gearbox = self.first_gearbox + (block * self.ranks + self.rank) * self.mixed + place
+        gearbox = self._first(block) + place
         if gearbox >= self.design.most_specimens:
             raise UsageError(
                 f"the stream has come to gearbox {gearbox}; a configuration has {self.design.most_specimens} of them"
             )
         return record_ids_of(self.design, gearbox)
 
-    def _mixed(self, block: int, made: Sequence[SimulatedRows]) -> list[dict[str, Any] | None]:
+    def _first(self, block: int) -> int:
+        """Return the first gearbox of a block of this share's."""
+        return self.first_gearbox + (block * self.ranks + self.rank) * self.mixed
+
+    def _mixed(self, block: int, made: Sequence[tuple[SimulatedRows, ...]]) -> list[dict[str, Any] | None]:
         """Return the records of a block of gearboxes in the order that is drawn for it; None for what failed."""
         records: list[dict[str, Any] | None] = []
-        for place, rows in enumerate(made):
-            self.failures |= {failure.record_id: failure for failure in rows.failures}
-            row_of = {number: row for row, number in enumerate(rows.rows["record_id"].to_pylist())}
-            for record_id in self._record_ids(block * self.mixed + place):
-                row = row_of.get(record_id)
-                records.append(None if row is None else as_record(rows.rows.slice(row, 1)))
+        for place, renewed in enumerate(made):
+            for renewal, rows in enumerate(renewed):
+                self.failures |= {failure.record_id: failure for failure in rows.failures}
+                row_of = {number: row for row, number in enumerate(rows.rows["record_id"].to_pylist())}
+                for record_id in self._record_ids(block * self.mixed + place):
+                    row = row_of.get(record_id)
+                    found = None if row is None else {**as_record(rows.rows.slice(row, 1)), "renewal": renewal}
+                    records.append(found)
         if not any(records):
-            first = made[0].failures[0]
+            first = made[0][0].failures[0]
             raise EngineError(
                 f"no record of {len(made)} gearboxes, of records from {first.record_id} on, could be simulated; the "
                 f"first is {first.status}: {first.reason}"
@@ -190,6 +207,7 @@ def stream(
     first_gearbox: int | None = None,
     seed: int = 0,
     mixed: int = MIXED,
+    renewals: int = 0,
     rank: int = 0,
     ranks: int = 1,
     workers: int | None = None,
@@ -197,7 +215,8 @@ def stream(
 ) -> RecordStream:
     """Return endless records of a design, simulated by worker processes as they are asked for; nothing is written.
 
-    Records and their order depend on the design and on `first_gearbox`, `seed`, `mixed`, `rank` and `ranks` alone.
+    Records and their order depend on the design and on `first_gearbox`, `seed`, `mixed`, `renewals`, `rank` and `ranks`
+    alone.
 
     Parameters
     ----------
@@ -209,6 +228,9 @@ def stream(
         Of the order.
     mixed : int
         Gearboxes whose records are mixed, and which are in memory at a time.
+    renewals : int
+        How often each record is given again. Its gearbox moves as it did; noise, gains, mounts, measured paths and
+        what carries them from casing to reading are drawn anew. Where sensors stand, speed and torque stay.
     rank, ranks : int
         Which of how many processes that train together this is: every gearbox goes to one of them.
     workers : int, optional
@@ -230,8 +252,8 @@ def stream(
     wholes: dict[str, int] = {}
     for name, value, least, most in (
         ("first_gearbox", first, 0, design.most_specimens - 1), ("seed", seed, 0, 2**63 - 1),
-        ("mixed", mixed, 1, 10_000), ("ranks", ranks, 1, 100_000), ("rank", rank, 0, 0),
-        ("workers", 1 if workers is None else workers, 1, 10_000),
+        ("mixed", mixed, 1, 10_000), ("renewals", renewals, 0, MOST_RENEWALS),
+        ("ranks", ranks, 1, 100_000), ("rank", rank, 0, 0), ("workers", 1 if workers is None else workers, 1, 10_000),
     ):  # fmt: skip
         allowed = wholes["ranks"] - 1 if name == "rank" else most
         if isinstance(value, bool) or not isinstance(value, Integral) or not least <= value <= allowed:
@@ -240,4 +262,5 @@ def stream(
         wholes[name] = int(value)
     share = wholes["rank"], wholes["ranks"]
     count_of = None if workers is None else wholes["workers"]
-    return RecordStream(design, wholes["first_gearbox"], wholes["seed"], wholes["mixed"], share, count_of, executor)
+    first, seed, mixed, renewals = (wholes[name] for name in ("first_gearbox", "seed", "mixed", "renewals"))
+    return RecordStream(design, first, seed, mixed, renewals, share, count_of, executor)

@@ -14,15 +14,19 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from multiprocessing import get_context, parent_process
+from multiprocessing import current_process, get_context, parent_process
 from multiprocessing.context import BaseContext
 from typing import Any
 
 from siggen.child_environment import OF_WORKERS, child_environment
+from siggen.errors import EngineError
 from siggen.workers.orphan import end_with
 
 PARENTS_SIGNALS = {signal.SIGINT, signal.SIGTERM}
 """A terminal sends Ctrl-C to the whole process group; only the parent decides what it means."""
+
+IMPORTING = 78
+"""Exit code of a worker that imports a script which starts workers itself."""
 
 PRELOADED = "siggen.sets.preloaded"
 DRIVER = "SIGGEN_DRIVER"
@@ -56,18 +60,31 @@ class WorkerPool(ProcessPoolExecutor):
             raise BrokenProcessPool(f"a worker could not be started: {error}") from error
 
     def __exit__(self, *_: object) -> None:
-        """End the workers, whatever they do: what is not finished is made again."""
+        """End the workers, whatever they do: what is not finished is made again.
+
+        Raises
+        ------
+        EngineError
+            If they ended because the script starts workers while they import it.
+        """
         processes = list((self._processes or {}).values())
         self.shutdown(wait=False, cancel_futures=True)
         for process in processes:
             process.kill()
         for process in processes:
             process.join()
+        if any(process.exitcode == IMPORTING for process in processes):
+            raise EngineError(
+                "workers import the script, which starts workers again. Put what calls siggen below the line "
+                '`if __name__ == "__main__":`'
+            )
 
 
 @contextmanager
 def worker_pool(workers: int) -> Iterator[WorkerPool]:
     """Give a pool whose processes are started inside the block, deaf to signals and with one thread each."""
+    if getattr(current_process(), "_inheriting", False):  # a worker that is not ready: it imports the script
+        os._exit(IMPORTING)
     with child_environment({**OF_WORKERS, DRIVER: str(os.getpid())}), _blocked(PARENTS_SIGNALS):
         pool = WorkerPool(workers)
     with pool:

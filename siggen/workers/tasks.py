@@ -155,8 +155,7 @@ def _given_up(under_way: Sequence[object], error: BaseException) -> str:
     return (
         f"workers died {BREAKS} times, and nothing was done between ({_first_line(error)}). Under way: "
         f"{_named(under_way)}. What is finished stays: try again with fewer workers, usually memory is short, or with "
-        "workers=0, in this process, to see where it stops. In a script of your own, call siggen below "
-        '`if __name__ == "__main__":`, since workers import the script'
+        "workers=0, in this process, to see where it stops"
     )
 
 

@@ -6,6 +6,8 @@ import hashlib
 import json
 import os
 import signal
+import subprocess
+import sys
 from collections.abc import Mapping
 from contextlib import closing
 from itertools import islice
@@ -22,13 +24,15 @@ from siggen.gearbox.design import SetDesign
 from siggen.sets.streaming import RecordStream
 from siggen.workers.process_pool import WorkerPool
 
-COUNT, MIXED = 30, 3
+COUNT, MIXED = 30, 2
+QUICKEST = "tests/configs/linear_pits.yaml"
 CHANGES = ("specimens=4", "duration_s=0.1")
+"""8 records of a gearbox in 0.3 s of CPU; streams do not ask what a record follows from."""
 
 
 @pytest.fixture(scope="module")
 def design() -> SetDesign:
-    return siggen.load_config("quickstart", CHANGES)
+    return siggen.load_config(QUICKEST, CHANGES)
 
 
 def taken(stream: RecordStream, count: int = COUNT) -> list[dict[str, Any]]:
@@ -53,14 +57,12 @@ def serial(design: SetDesign) -> list[dict[str, Any]]:
 def test_streamed_records_are_those_of_the_set_with_as_many_gearboxes(
     design: SetDesign, serial: list[dict[str, Any]], tmp_path: Path
 ) -> None:
-    siggen.generate(siggen.load_config("quickstart", ("specimens=7", *CHANGES[1:])), tmp_path / "set", workers=0)
+    siggen.generate(siggen.load_config(QUICKEST, ("specimens=6", *CHANGES[1:])), tmp_path / "set", workers=0)
     stored = siggen.open(tmp_path / "set")
-    gearboxes = {record["specimen_id"] for record in serial}
-    assert min(gearboxes) == design.specimens  # none of the set
-    behind = [record for record in serial if record["specimen_id"] < 7]
-    assert len(behind) == MIXED * design.records_per_specimen
-    assert digest(behind) == digest([stored.record(record["record_id"]) for record in behind])
-    ids = [record["record_id"] for record in behind]
+    assert min(record["specimen_id"] for record in serial) == design.specimens  # none of the set
+    mixed = serial[: MIXED * design.records_per_specimen]
+    assert digest(mixed) == digest([{**stored.record(record["record_id"]), "renewal": 0} for record in mixed])
+    ids = [record["record_id"] for record in mixed]
     assert ids != sorted(ids)
     assert len(set(ids)) == len(ids)
 
@@ -98,6 +100,67 @@ def test_a_worker_that_dies_changes_nothing(
     assert len({id(pool) for pool in pools}) >= 2  # another one went on
 
 
+def test_renewals_move_as_their_record_and_have_noise_of_their_own(
+    design: SetDesign, serial: list[dict[str, Any]]
+) -> None:
+    given = {"mixed": 1, "renewals": 7}
+    stream = siggen.stream(design, **given, executor="serial")
+    found = taken(stream, 64)
+    first = {record["record_id"]: record for record in serial}
+    assert sorted((record["record_id"], record["renewal"]) for record in found) == [
+        (number, renewal) for number in sorted(first)[:8] for renewal in range(8)
+    ]
+    renewed = design.gearbox(4).renewed
+    gains = [design.gearbox(4).channels[0].gain, *(renewed(number)[0].gain for number in range(1, 8))]
+    for record in found:
+        one, channel = first[record["record_id"]], "bearing_vertical"
+        if record["renewal"] == 0:
+            assert digest([record]) == digest([one])
+            continue
+        differing = {name for name in one if not np.array_equal(one[name], record[name])}
+        assert all(name == "renewal" or "bearing_" in name for name in differing)
+        # what is read without noise: the same motion, times the gain
+        silent = [
+            10.0 ** (own[f"snr_{channel}_db"] / 20.0) * own[f"noise_floor_{channel}_m_s2"] / gains[own["renewal"]]
+            for own in (one, record)
+        ]
+        assert silent[1] == pytest.approx(silent[0], rel=1e-9)
+    noise = np.array([record["accel_bearing_vertical_m_s2"] for record in found if record["record_id"] == 32])
+    assert len(np.unique(noise[:, 0])) == len(noise)
+    begun = siggen.stream(design, **given, workers=2)
+    assert digest(taken(begun, 21)) == digest(found[:21])
+    last = siggen.stream(design, **given, executor="serial")
+    last.load_state_dict(begun.state_dict())
+    assert digest(taken(last, 43)) == digest(found[21:])
+
+
+def test_noise_and_gains_of_renewals_have_the_laws_of_the_set(design: SetDesign) -> None:
+    from scipy.stats import kstest, loguniform, truncnorm
+
+    found = taken(siggen.stream(design, mixed=1, renewals=50, executor="serial"), 8 * 51)
+    floors = [record["noise_floor_bearing_vertical_m_s2"] for record in found]
+    assert kstest(floors, loguniform(1.0, 20.0).cdf).pvalue > 0.01
+    renewed = design.gearbox(4).renewed
+    gains = [channel.gain for number in range(1, 401) for channel in renewed(number)]
+    assert kstest(gains, truncnorm(-2.5, 2.5, 1.0, 0.02).cdf).pvalue > 0.01
+
+
+def test_a_script_that_workers_cannot_import_is_told_the_line_that_it_lacks(tmp_path: Path) -> None:
+    script = tmp_path / "unguarded.py"
+    made = f"siggen.stream(siggen.load_config({str(Path(QUICKEST).resolve())!r}, ['duration_s=0.1']), workers=1)"
+    script.write_text(f"import siggen\nnext(iter({made}))\n", encoding="utf-8")
+    said = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=300, check=False).stderr
+    assert said.splitlines()[-1].endswith('Put what calls siggen below the line `if __name__ == "__main__":`')
+    assert said.count("Traceback") == 1  # of the script, none of workers
+
+
+def test_a_stream_says_where_it_is(design: SetDesign) -> None:
+    stream = siggen.stream(design, mixed=2, rank=1, ranks=2, executor="serial")
+    assert repr(stream) == "<stream of linear_pits: 0 records given, next those of gearboxes 6 to 7>"
+    stream.load_state_dict({**stream.state_dict(), "passed": 17})
+    assert repr(stream) == "<stream of linear_pits: 17 records given, next those of gearboxes 10 to 11>"
+
+
 def test_ranks_share_the_gearboxes(design: SetDesign) -> None:
     streams = [siggen.stream(design, mixed=2, rank=rank, ranks=2, executor="serial") for rank in range(2)]
     shares = [{record["specimen_id"] for record in taken(one, 10)} for one in streams]
@@ -133,6 +196,7 @@ def test_gearboxes_that_all_fail_end_the_stream_with_the_first_reason(
 REFUSED: Mapping[str, Mapping[str, Any]] = {
     r"^workers: received 0; allowed: whole numbers from 1.*executor='serial' simulates in this process": {"workers": 0},
     r"^workers: received 1.5; allowed: whole numbers from 1": {"workers": 1.5},
+    r"^renewals: received 401; allowed: whole numbers from 0 to 400": {"renewals": 401},
     r"^mixed: received 0; allowed: whole numbers from 1": {"mixed": 0},
     r"^rank: received 2; allowed: whole numbers from 0 to 1": {"rank": 2, "ranks": 2},
     r"^first_gearbox: received -1; allowed: whole numbers from 0": {"first_gearbox": -1},
