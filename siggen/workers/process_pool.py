@@ -77,7 +77,7 @@ class WorkerPool(ProcessPoolExecutor):
             raise EngineError(
                 "workers import the script, which starts workers again. Put what calls siggen below the line "
                 '`if __name__ == "__main__":`'
-            )
+            ) from None
 
 
 @contextmanager
