@@ -3,11 +3,6 @@
 A local event of a few degrees is spread over all orders. Where healthy residuals are weak or Gaussian, it is their only
 outlier, so the band is not known beforehand. Kurtosis of a band: Stewart's FM4 in a band; envelope and dyadic bands:
 Antoni and Randall 2006 (kurtogram). The bank is derived.
-
-The path to the sensor smears an event over the pitches behind it. A filter of minimum phase with the size of the
-record's own lines takes that back, blindly; what is left ("innovations") has a flat spectrum. Source: minimum phase by
-the folded cepstrum (Oppenheim and Schafer), standard literature. Somebody who had not read this audit found that
-filters of zero phase, which leave the smear, tell far less.
 """
 
 from __future__ import annotations
@@ -198,51 +193,3 @@ def whitened(lines: np.ndarray) -> np.ndarray:
         count = np.isfinite(ordered).sum(axis=-1)
         middle = np.take_along_axis(ordered, np.maximum(count // 2, 0)[..., None].clip(0, ordered.shape[-1] - 1), -1)
         return np.where(size > 0.0, lines / middle[..., 0], lines)
-
-
-AROUND = 5
-"""Lines whose mean power is the size of the path at one of them."""
-PITCHES = 2.0
-"""How long the path rings at most: longer quefrencies are left to the teeth."""
-
-
-def innovations(lines: np.ndarray, teeth: np.ndarray) -> np.ndarray:
-    """Return lines behind the inverse of a filter of minimum phase that has their size.
-
-    Parameters
-    ----------
-    lines : (records, channels, orders) complex128
-        Residual lines; those that are zero do not count. Channels without lines, or with NaN, stay as they are.
-    teeth : (records,) int
-        Of the shaft that was averaged.
-
-    Returns
-    -------
-    (records, channels, orders) complex128
-        Zero where `lines` are.
-    """
-    found = np.array(lines)
-    for row, channel in np.argwhere(measured_channels(lines)).tolist():
-        found[row, channel] = lines[row, channel] / _path(lines[row, channel], int(teeth[row]))
-    return found
-
-
-def measured_channels(lines: np.ndarray) -> np.ndarray:
-    """Return which channels hold lines, (records, channels) bool."""
-    return np.asarray(np.isfinite(lines).all(axis=-1) & (np.abs(lines) > 0.0).any(axis=-1))
-
-
-def _path(lines: np.ndarray, teeth: int) -> np.ndarray:
-    """Return the filter of one channel of a record, (orders,) complex128."""
-    from scipy import fft
-    from scipy.ndimage import convolve1d  # a running mean would carry the rounding of strong lines to weak ones
-
-    even = np.full(AROUND, 1.0 / AROUND)
-    counted = convolve1d((np.abs(lines) > 0.0).astype(np.float64), even)
-    power = convolve1d(np.square(np.abs(lines)), even)
-    order, steps, known = np.arange(lines.size), 2 * (lines.size - 1), counted > 0.5 / AROUND
-    size = np.interp(order, order[known], power[known] / counted[known])
-    place, longest = np.arange(steps), PITCHES * steps / teeth
-    folded = np.where((place > 0) & (place <= longest), 0.5 + 0.5 * np.cos(np.pi * place / (longest + 1.0)), 0.0)
-    folded[0] = 0.5
-    return np.asarray(np.exp(fft.rfft(fft.irfft(np.log(size + TINY), steps) * folded)))

@@ -27,10 +27,8 @@ import numpy as np
 from diagnostics.audit.audit import REFERENCED
 from diagnostics.audit.averaged_lines import (
     band_bank,
-    innovations,
     kurtogram_maximum,
     line_array,
-    measured_channels,
     residual_lines,
     whitened,
 )
@@ -38,6 +36,7 @@ from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.base.extras import missing_packages
 from diagnostics.judging.evaluation import Entry
 from diagnostics.judging.learners import all_columns, best_column
+from diagnostics.signal.innovations import innovations, measured_channels
 from diagnostics.statistics.evaluation import mean_of_defined
 from diagnostics.training.average_rows import AveragedRecords, padded_lines
 from diagnostics.training.splits import SpecimenSplit

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 from scipy.signal import freqz, zpk2tf
 
-from diagnostics.audit.averaged_lines import innovations, whitened
+from diagnostics.audit.averaged_lines import whitened
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.signal_attackers import tooth_attacker
+from diagnostics.signal.innovations import innovations
 
 TEETH, STEPS = 18, 1024
 GEARBOXES, RECORDS = 20, 3
