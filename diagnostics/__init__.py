@@ -19,10 +19,12 @@ if TYPE_CHECKING:
     from diagnostics.scoring.score import score
     from diagnostics.training.average_rows import averages
     from diagnostics.training.classifiers import BoostingBaseline, LogisticBaseline
+    from diagnostics.training.pretraining import PretrainingSettings, pretrain
 
 __all__ = [
     "BoostingBaseline",
     "LogisticBaseline",
+    "PretrainingSettings",
     "averages",
     "benchmark_baselines",
     "commit_benchmark",
@@ -30,6 +32,7 @@ __all__ = [
     "leaderboard",
     "make_benchmark",
     "open_benchmark",
+    "pretrain",
     "reveal_benchmark",
     "score",
     "score_benchmark",
@@ -52,6 +55,8 @@ _HOMES = {
     "windows": "diagnostics.loader.window_arrays",
     "LogisticBaseline": "diagnostics.training.classifiers",
     "BoostingBaseline": "diagnostics.training.classifiers",
+    "pretrain": "diagnostics.training.pretraining",
+    "PretrainingSettings": "diagnostics.training.pretraining",
 }
 
 

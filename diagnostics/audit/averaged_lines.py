@@ -11,12 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-SHAFT_ORDERS = 8
-"""Orders 0 ... 8 are no residual: couplings and rotors press there, up to 4x, and no tooth.
-
-`diagnostics.signal.shaft_signals` leaves out 0 to 2, as the toolboxes do. There a strong 3x of a coupling changes
-every share of energy.
-"""
+from diagnostics.signal.innovations import SHAFT_ORDERS
 
 WHITENING_ORDERS = 10
 """Lines on each side whose median size a line is divided by."""
@@ -157,21 +152,6 @@ def line_array(waveforms: Sequence[Sequence[np.ndarray]]) -> np.ndarray:
             if lines.size == 0:
                 found[record, channel] = np.nan
     return found
-
-
-def residual_lines(lines: np.ndarray, teeth: np.ndarray) -> np.ndarray:
-    """Return lines without shaft orders 0 to 8 and without all mesh harmonics; sidebands stay.
-
-    Parameters
-    ----------
-    lines : (records, channels, orders) complex128
-        As of `line_array`.
-    teeth : (records,) int
-        Teeth of the shaft that was averaged.
-    """
-    order = np.arange(lines.shape[-1])
-    left_out = (order <= SHAFT_ORDERS) | (order[None, :] % np.asarray(teeth)[:, None] == 0)
-    return np.asarray(np.where(left_out[:, None, :], 0.0, lines))
 
 
 def whitened(lines: np.ndarray) -> np.ndarray:

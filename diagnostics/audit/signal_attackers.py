@@ -29,14 +29,13 @@ from diagnostics.audit.averaged_lines import (
     band_bank,
     kurtogram_maximum,
     line_array,
-    residual_lines,
     whitened,
 )
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.base.extras import missing_packages
 from diagnostics.judging.evaluation import Entry
 from diagnostics.judging.learners import all_columns, best_column
-from diagnostics.signal.innovations import innovations, measured_channels
+from diagnostics.signal.innovations import innovations, measured_channels, residual_lines
 from diagnostics.statistics.evaluation import mean_of_defined
 from diagnostics.training.average_rows import AveragedRecords, padded_lines
 from diagnostics.training.splits import SpecimenSplit

@@ -21,6 +21,7 @@ class Purpose(IntEnum):
     PATHS = 11
     LIFE_NETWORK = 12
     REPLAY = 13
+    PRETRAINING = 14
 
 
 def generator(seed: int, purpose: Purpose, owner: int = 0, *part: int) -> np.random.Generator:

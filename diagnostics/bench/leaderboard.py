@@ -33,7 +33,7 @@ import numpy as np
 import pyarrow as pa
 from pyarrow import parquet
 
-from diagnostics.audit.averaged_lines import band_bank, kurtogram_maximum, line_array, residual_lines
+from diagnostics.audit.averaged_lines import band_bank, kurtogram_maximum, line_array
 from diagnostics.audit.detectability import ADDED, LEVELS, PLAIN
 from diagnostics.audit.signal_attackers import convolution_features, level_waves, over_channels
 from diagnostics.base.beside import beside
@@ -69,6 +69,7 @@ from diagnostics.scoring.detect import DAMAGE
 from diagnostics.scoring.prediction_file import CLASSIFIER, IDENTITY_KEY, PREDICTIONS_FILE, RECORD, prediction_table
 from diagnostics.scoring.remaining_life import COLUMNS
 from diagnostics.scoring.score_rows import ScoreRow, score_figure
+from diagnostics.signal.innovations import residual_lines
 from diagnostics.statistics.evaluation import RESAMPLES, Interval, area_interval, bootstrap_weights, interval
 from diagnostics.training.average_rows import AveragedRecords, padded_lines
 from diagnostics.training.feature_classifier import DEFAULT_STRENGTH

@@ -1,4 +1,4 @@
-"""Lines of an averaged revolution behind the inverse of their path.
+"""Lines of an averaged revolution without those of shafts and meshes, and behind the inverse of their path.
 
 The path to the sensor smears an event over the pitches behind it. A filter of minimum phase with the size of the
 record's own lines takes that back, blindly; what is left ("innovations") has a flat spectrum. Source: minimum phase by
@@ -12,10 +12,32 @@ import numpy as np
 
 TINY = 1e-30
 
+SHAFT_ORDERS = 8
+"""Orders 0 ... 8 are no residual: couplings and rotors press there, up to 4x, and no tooth.
+
+`diagnostics.signal.shaft_signals` leaves out 0 to 2, as the toolboxes do. There a strong 3x of a coupling changes
+every share of energy.
+"""
+
 AROUND = 5
 """Lines whose mean power is the size of the path at one of them."""
 PITCHES = 2.0
 """How long the path rings at most: longer quefrencies are left to the teeth."""
+
+
+def residual_lines(lines: np.ndarray, teeth: np.ndarray) -> np.ndarray:
+    """Return lines without shaft orders 0 to 8 and without all mesh harmonics; sidebands stay.
+
+    Parameters
+    ----------
+    lines : (records, channels, orders) complex128
+        From order 0 on.
+    teeth : (records,) int
+        Teeth of the shaft that was averaged.
+    """
+    order = np.arange(lines.shape[-1])
+    left_out = (order <= SHAFT_ORDERS) | (order[None, :] % np.asarray(teeth)[:, None] == 0)
+    return np.asarray(np.where(left_out[:, None, :], 0.0, lines))
 
 
 def innovations(lines: np.ndarray, teeth: np.ndarray, of: np.ndarray | None = None) -> np.ndarray:

@@ -10,7 +10,6 @@ stand in its metadata.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import isfinite
@@ -18,16 +17,14 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from safetensors import SafetensorError, safe_open
-from safetensors.torch import load_file, save
 from torch import nn
 
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.training.average_rows import ROWS, AveragedRecords, average_rows, moved
 from diagnostics.training.loop import LoopSettings, fit_network, seeded
 from diagnostics.training.splits import SpecimenSplit
+from diagnostics.training.weights_file import load_weights, other_schema, read_facts, save_weights
 from siggen.errors import UsageError
-from siggen.file_writing import write_file
 
 FORMAT = "siggen-diagnostics network on averages 1"
 
@@ -233,10 +230,9 @@ def network_probability(network: CircularNetwork, records: AveragedRecords) -> n
 
 
 def save_network(trained: TrainedNetwork, path: Path) -> None:
-    """Write weights and facts as safetensors; the facts are JSON under the metadata key `facts`."""
+    """Write weights and facts, see `diagnostics.training.weights_file`."""
     facts = {name: getattr(trained, name) for name in ("classes", "channels", "identity", "temperature")}
-    weights = {name: value.contiguous() for name, value in trained.network.state_dict().items()}
-    write_file(path, save(weights, metadata={"format": FORMAT, "facts": json.dumps(facts)}))
+    save_weights(trained.network, path, FORMAT, facts)
 
 
 def load_network(path: Path) -> TrainedNetwork:
@@ -247,25 +243,14 @@ def load_network(path: Path) -> TrainedNetwork:
     UsageError
         If the file is not one.
     """
+    facts = read_facts(path, FORMAT)
     try:
-        with safe_open(path, framework="pt") as file:
-            metadata = file.metadata() or {}
-    except (OSError, SafetensorError) as error:
-        raise UsageError(f"{path}: cannot be read as safetensors ({error})") from error
-    if metadata.get("format") != FORMAT:
-        raise UsageError(f"{path}: received format {metadata.get('format')!r}; allowed is {FORMAT!r}")
-    try:
-        facts = json.loads(metadata["facts"])
         classes, channels, temperature = tuple(facts["classes"]), tuple(facts["channels"]), float(facts["temperature"])
         network = CircularNetwork(ROWS * len(channels), len(classes))
-        network.load_state_dict(load_file(path))
         identity = str(facts["identity"])
-    except (KeyError, TypeError, ValueError, RuntimeError, SafetensorError) as error:
-        text = str(error).splitlines()[0]
-        raise UsageError(f"{path}: received facts or weights of another schema ({text}); train again") from error
-    infinite = [name for name, value in network.state_dict().items() if not bool(torch.isfinite(value).all())]
-    if infinite:
-        raise UsageError(f"{path}: received {infinite[0]} that is not finite; the file is damaged: train again")
+    except (KeyError, TypeError, ValueError, RuntimeError) as error:
+        raise other_schema(path, error) from error
+    load_weights(network, path)
     if not (isfinite(temperature) and temperature > 0.0):
         raise UsageError(f"{path}: received temperature {temperature}; allowed: finite and above 0; train again")
-    return TrainedNetwork(network.eval(), classes, channels, temperature=temperature, identity=identity)
+    return TrainedNetwork(network, classes, channels, temperature=temperature, identity=identity)

@@ -20,13 +20,14 @@ from typing import Any
 import numpy as np
 
 import siggen
-from diagnostics.audit.averaged_lines import line_array, residual_lines
+from diagnostics.audit.averaged_lines import line_array
 from diagnostics.audit.bank import chance_limit
 from diagnostics.audit.measured_set import MeasuredSet, measured_set, reference_records
 from diagnostics.audit.signal_attackers import attackers_on, signal_attackers
 from diagnostics.audit.traps import separability_findings
 from diagnostics.base.single_thread import single_thread
 from diagnostics.judging.evaluation import Entry
+from diagnostics.signal.innovations import residual_lines
 from diagnostics.statistics.evaluation import clopper_pearson
 from siggen.keys.column import Role
 

@@ -1,0 +1,409 @@
+"""A network that has seen thousands of gearboxes: they are streamed, kept as averages, and passed over.
+
+    diagnostics.pretrain("runs/pretrained", minutes=75)   # again: goes on, until everything is done
+
+First every family streams its gearboxes. Of a record only the averages of its gears are kept, 16 KB for two channels:
+thousands of gearboxes then fit in memory, and every pass mixes all of them. (Of a stream that is used up block by block
+a network has forgotten the first gearboxes when the last ones come.) Then the network passes over them. Its weights
+depend on families, numbers and seed alone, not on the minutes of a call, on interruptions or on the number of cores.
+
+What it is judged on are pairs of gears that no record it has learnt from had: the split `test` of the families. The
+split `validation` widens intervals of the size.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import asdict, dataclass
+from functools import partial
+from io import BytesIO
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+import torch
+
+import siggen
+from diagnostics.base.seeding import Purpose, generator
+from diagnostics.records.state_classes import HEALTHY
+from diagnostics.statistics.evaluation import area, bootstrap_weights
+from diagnostics.training.gear_rows import ALONE, GearLines, gear_lines, gear_rows
+from diagnostics.training.gearbox_network import (
+    NOWHERE,
+    QUANTILES,
+    WIDTHS,
+    GearboxNetwork,
+    Told,
+    Truths,
+    save_gearbox_network,
+    tell,
+    told_loss,
+)
+from diagnostics.training.loop import LoopSettings, fit_network, seeded
+from diagnostics.training.referenced import healthy_references
+from diagnostics.training.splits import TEST, TRAIN, VALIDATION
+from siggen.errors import UsageError
+from siggen.file_writing import write_file
+from siggen.plain_json import json_text, plain
+
+FAMILIES = tuple(str(Path(__file__).with_name("families") / f"{name}.yaml") for name in ("spalls", "faults"))
+PLAN, PLACE, WEIGHTS, CARD = "plan.json", "place.pt", "network.safetensors", "card.json"
+LABELS = (
+    "record_id", "specimen_id", "split", "state_id", "state", "operating_point_id", "repeat", "fault", "faulty_gear",
+    "damaged_area_share",
+)  # fmt: skip
+GEARS = ("pinion", "gear")
+TEETH = tuple(f"teeth_{gear}" for gear in GEARS)
+ACCELERATION = "acceleration"
+Say: TypeAlias = Callable[[str], object]
+"""Takes a line on how far it is."""
+USE = (
+    "To tell damage of teeth in gearboxes with fixed shafts, from accelerations with a pulse per turn and known teeth."
+)
+NO_USE = (
+    "All it has learnt from is simulated: no measured damage was seen. Its scores are no detection limits of a "
+    "machine. Not for planetary sets, for speeds that run up or down, or as the only reason to stop a "
+    "machine or not."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class PretrainingSettings:
+    """What is learnt from, and how.
+
+    Attributes
+    ----------
+    families : tuple of str
+        Configurations whose gearboxes are streamed, as of `siggen.load_config`.
+    gearboxes : int
+        Of all families together; each has the same share.
+    mixed : int
+        Gearboxes that are simulated before they are written.
+    passes : int
+        Over the gearboxes to learn from.
+    batch : int
+        Channels of records per step.
+    rate, decay : float
+        Of AdamW; the rate falls.
+    widths : tuple of int
+        Of the network's stages.
+    alone : float
+        Share of the records whose healthy record is taken away.
+    seed : int
+        Of weights, order and what is taken away.
+    """
+
+    families: tuple[str, ...] = FAMILIES
+    gearboxes: int = 2000
+    mixed: int = 8
+    passes: int = 20
+    batch: int = 64
+    rate: float = 3e-3
+    decay: float = 0.1
+    widths: tuple[int, ...] = WIDTHS
+    alone: float = 0.5
+    seed: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class KeptRecords:
+    """Averages of records with what is true of them.
+
+    Attributes
+    ----------
+    averages : GearLines
+    labels : mapping of str to (records,)
+        As a record has them; `record_id` and `specimen_id` count over all families.
+    """
+
+    averages: GearLines
+    labels: Mapping[str, np.ndarray]
+
+    def of_split(self, name: str) -> np.ndarray:
+        """Return the places of the records of a split."""
+        return np.flatnonzero(self.labels["split"] == name)
+
+
+class _TimeIsUpError(Exception):
+    """The minutes of a call are over; the next one goes on."""
+
+
+def pretrain(
+    folder: Path | str,
+    settings: PretrainingSettings | None = None,
+    *,
+    minutes: float | None = None,
+    workers: int | None = None,
+    say: Say = lambda _: None,
+) -> dict[str, Any] | None:
+    """Train a network on streamed gearboxes; a call that was stopped or ended goes on with the same arguments.
+
+    Parameters
+    ----------
+    folder : path
+        Takes averages, the place of the training, weights and card.
+    settings : PretrainingSettings, optional
+        Default: two thousand gearboxes of the shipped families, 75 minutes on two cores.
+    minutes : float, optional
+        After which the call ends at the next place from which it can go on; by default when all is done.
+    workers : int, optional
+        Processes that simulate, by default one per core.
+    say : callable, optional
+        Takes a line on how far it is.
+
+    Returns
+    -------
+    dict or None
+        The card: settings, digests, gearboxes, scores, use; None if the minutes are over before.
+
+    Raises
+    ------
+    UsageError
+        If the folder holds another training, or a family is one of several stages or of planets.
+    """
+    chosen, home = settings or PretrainingSettings(), Path(folder)
+    end = None if minutes is None else time.monotonic() + 60.0 * minutes
+    try:
+        kept = _averages(home, chosen, workers, partial(_check, end), say)
+        found = _trained(home, chosen, kept, partial(_check, end), say)
+    except _TimeIsUpError:
+        say(f"{minutes:g} minutes are over; the same call goes on")
+        return None
+    return _finished(home, kept, *found)
+
+
+def _check(end: float | None) -> None:
+    if end is not None and time.monotonic() > end:
+        raise _TimeIsUpError
+
+
+def _averages(
+    home: Path,
+    chosen: PretrainingSettings,
+    workers: int | None,
+    check: Callable[[], None],
+    say: Callable[[str], object],
+) -> KeptRecords:
+    """Return the averages of all families, after those that are missing were simulated."""
+    designs = [siggen.load_config(name) for name in chosen.families]
+    blocks = -(-chosen.gearboxes // (len(designs) * chosen.mixed))
+    streams = [
+        partial(siggen.stream, design, mixed=chosen.mixed, seed=chosen.seed, workers=workers) for design in designs
+    ]
+    _keep_plan(home, chosen, [stream(first_gearbox=0).state_dict() for stream in streams])
+    for family, begun in enumerate(streams):
+        done = next((number for number in range(blocks) if not _block(home, family, number).exists()), blocks)
+        if done == blocks:
+            continue
+        check()
+        stream = begun(first_gearbox=done * chosen.mixed)
+        with closing(stream.blocks()) as found:  # type: ignore[type-var]
+            for number in range(done, blocks):
+                _write_block(_block(home, family, number), next(found), stream)
+                say(f"family {family + 1} of {len(designs)}: {(number + 1) * chosen.mixed} gearboxes")
+                check()
+    return _read(home, len(designs), blocks)
+
+
+def _block(home: Path, family: int, number: int) -> Path:
+    return home / "averages" / f"{family}-{number:05d}.npz"
+
+
+def _keep_plan(home: Path, chosen: PretrainingSettings, places: list[dict[str, Any]]) -> None:
+    """Write what the folder is of, or refuse another one."""
+    streams = [{name: place[name] for name in ("configuration", "sources")} for place in places]
+    plan = {**asdict(chosen), "families": [Path(name).stem for name in chosen.families], "streams": streams}
+    text, path = json_text(plan), home / PLAN
+    if not path.exists():
+        write_file(path, text)
+    elif (old := json.loads(path.read_text(encoding="utf-8"))) != (new := json.loads(text)):
+        names = ", ".join(name for name in new if new[name] != old.get(name))
+        raise UsageError(
+            f"{home}: holds a training with other {names}; allowed: another folder, or the settings and the version of "
+            "siggen that it was begun with"
+        )
+
+
+def _write_block(path: Path, records: Sequence[Mapping[str, Any] | None], stream: Any) -> None:
+    known = sorted((record for record in records if record is not None), key=lambda record: record["record_id"])
+    lines, teeth = zip(*(_of_record(record, stream) for record in known), strict=True)
+    labels = {name: np.array([record[name] for record in known]) for name in LABELS}
+    content = BytesIO()
+    np.savez(content, allow_pickle=False, lines=np.stack(lines), teeth=np.stack(teeth), **labels)
+    write_file(path, content.getvalue())
+
+
+def _of_record(record: Mapping[str, Any], stream: Any) -> tuple[np.ndarray, np.ndarray]:
+    columns = {one.name: record[one.column] for one in stream.channels if one.quantity == ACCELERATION}
+    if not columns or not set(TEETH) <= record.keys():
+        raise UsageError(
+            "families: received one without acceleration, or of other gears than a pinion and a gear; allowed: pairs "
+            "with accelerometers"
+        )
+    return gear_lines(columns, record["tacho_s"], stream.design.fs_hz, tuple(record[name] for name in TEETH))
+
+
+def _read(home: Path, families: int, blocks: int) -> KeptRecords:
+    parts: list[dict[str, np.ndarray]] = []
+    for family in range(families):
+        for number in range(blocks):
+            with np.load(_block(home, family, number), allow_pickle=False) as file:
+                part = {name: file[name] for name in file.files}
+            for name in ("record_id", "specimen_id"):
+                part[name] = part[name] * families + family  # numbers of their own
+            parts.append(part)
+    joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    return KeptRecords(GearLines(joined.pop("lines"), joined.pop("teeth")), joined)
+
+
+def _rows(kept: KeptRecords) -> np.ndarray:
+    """Return the rows of all records, beside a healthy record where there is one."""
+    lines = kept.averages.lines
+    healthy = np.full_like(lines, np.nan)
+    for row, known in enumerate(healthy_references(kept.labels)):
+        if known.size:
+            healthy[row] = lines[known].mean(axis=0)
+    return gear_rows(kept.averages, healthy)
+
+
+def _truths(kept: KeptRecords, kinds: Sequence[str]) -> Truths:
+    fault, gear = kept.labels["fault"], kept.labels["faulty_gear"]
+    with np.errstate(divide="ignore"):
+        size = np.log(kept.labels["damaged_area_share"].astype(np.float32))
+    return Truths(
+        damaged=(fault != HEALTHY).astype(np.float32),
+        kind=np.array([kinds.index(name) if name in kinds else NOWHERE for name in fault.tolist()]),
+        gear=np.array([GEARS.index(name) if name in GEARS else NOWHERE for name in gear.tolist()]),
+        size=np.where(np.isfinite(size), size, np.nan),
+    )
+
+
+def _trained(
+    home: Path, chosen: PretrainingSettings, kept: KeptRecords, check: Callable[[], None], say: Say
+) -> tuple[GearboxNetwork, np.ndarray, Truths]:
+    """Return the network at its last pass, with the rows and the truth of all records."""
+    learn = kept.of_split(TRAIN)
+    faults = set(kept.labels["fault"][learn].tolist()) - {HEALTHY}
+    if not faults or HEALTHY not in kept.labels["fault"][learn]:
+        raise UsageError("families: the split train has no healthy, or no damaged records; ask for more gearboxes")
+    rows, truths = _rows(kept), _truths(kept, sorted(faults))
+    share, sizes = float(truths.damaged[learn].mean()), truths.size[learn][np.isfinite(truths.size[learn])]
+    channels = rows.shape[1]
+    with seeded(chosen.seed):
+        network = GearboxNetwork(sorted(faults), chosen.widths)
+        if sizes.size:
+            network.size_centre.copy_(torch.tensor([sizes.mean(), max(float(sizes.std()), 1e-3)]))
+
+        def batches(number: int) -> Iterator[torch.Tensor]:
+            rng, losses = generator(chosen.seed, Purpose.PRETRAINING, number), []
+            order = rng.permutation(learn.size * channels)
+            for start in range(0, order.size - order.size % chosen.batch or order.size, chosen.batch):
+                check()
+                place, channel = np.divmod(order[start : start + chosen.batch], channels)
+                seen = _moved(rows[learn[place], channel], rng, chosen.alone)
+                loss = told_loss(network(seen), truths.chosen(learn[place]), share)
+                losses.append(float(loss.detach()))
+                yield loss
+            say(f"pass {number} of {chosen.passes}: loss {np.mean(losses):.4f}")
+
+        loop = LoopSettings(chosen.passes, chosen.rate, chosen.decay, falling=True)
+        fit_network(network, batches, None, loop, place=home / PLACE)
+    return network, rows, truths
+
+
+def _moved(rows: np.ndarray, rng: np.random.Generator, alone: float) -> torch.Tensor:
+    """Return rows as seen from another tooth, by a sensor of another sign, some without their healthy record."""
+    shift, sign = int(rng.integers(rows.shape[-1])), rng.choice((-1.0, 1.0), len(rows))
+    found = np.roll(rows, shift, axis=-1).astype(np.float32) * sign[:, None, None, None].astype(np.float32)
+    found[rng.random(len(rows)) < alone, :, ALONE:] = 0.0
+    return torch.from_numpy(found)
+
+
+def _finished(
+    home: Path, kept: KeptRecords, network: GearboxNetwork, rows: np.ndarray, truths: Truths
+) -> dict[str, Any]:
+    """Write weights and card; return the card."""
+    with seeded(0):
+        _widen(network, rows, truths, kept.of_split(VALIDATION))
+        scores = _scores(network, kept, rows, truths)
+    save_gearbox_network(network, home / WEIGHTS)
+    plan, split, owner = json.loads((home / PLAN).read_text()), kept.labels["split"], kept.labels["specimen_id"]
+    card: dict[str, Any] = plain(
+        {
+            "weights_sha256": hashlib.sha256((home / WEIGHTS).read_bytes()).hexdigest(),
+            "parameters": sum(weight.numel() for weight in network.parameters()),
+            "torch": torch.__version__,
+            **plan,
+            "learnt_from": {
+                name: {"gearboxes": int(np.unique(owner[split == name]).size), "records": int((split == name).sum())}
+                for name in (TRAIN, VALIDATION, TEST)
+            },
+            "kinds": network.kinds,
+            "scores_of_unseen_pairs": scores,
+            "use": USE,
+            "no_use": NO_USE,
+        }
+    )
+    write_file(home / CARD, json_text(card))
+    return card
+
+
+def _alone(rows: np.ndarray) -> np.ndarray:
+    found = rows.copy()
+    found[..., ALONE:, :] = 0.0
+    return found
+
+
+def _has_healthy(rows: np.ndarray) -> np.ndarray:
+    return np.asarray((rows[:, :, :, ALONE:] != 0.0).any(axis=(1, 2, 3, 4)))
+
+
+def _widen(network: GearboxNetwork, rows: np.ndarray, truths: Truths, places: np.ndarray) -> None:
+    """Widen intervals of the size so that they hold as many of the records left out as they say."""
+    places = places[np.isfinite(truths.size[places])]
+    if not places.size:
+        return
+    missed = []
+    for seen in (_alone(rows[places]), rows[places][_has_healthy(rows[places])]):
+        known = truths.size[places] if len(seen) == places.size else truths.size[places][_has_healthy(rows[places])]
+        low, _, high = tell(network, seen).size.numpy().T
+        missed.append(np.maximum(low - known, known - high))
+    found = np.sort(np.concatenate(missed))
+    rank = int(np.ceil((found.size + 1) * (QUANTILES[-1] - QUANTILES[0]))) - 1
+    network.size_widening.fill_(float(found[min(rank, found.size - 1)]))
+
+
+def _scores(network: GearboxNetwork, kept: KeptRecords, rows: np.ndarray, truths: Truths) -> dict[str, Any]:
+    """Return what the network tells of unseen pairs, alone and beside a healthy record."""
+    places = kept.of_split(TEST)
+    beside = places[_has_healthy(rows[places])]
+    return {
+        name: _scores_of(tell(network, seen), truths.chosen(chosen), {k: v[chosen] for k, v in kept.labels.items()})
+        for name, chosen, seen in (("alone", places, _alone(rows[places])), ("beside", beside, rows[beside]))
+        if chosen.size
+    }
+
+
+def _scores_of(told: Told, truths: Truths, labels: Mapping[str, np.ndarray]) -> dict[str, Any]:
+    damage, specimen = told.damage.double().numpy(), labels["specimen_id"]
+    weights = bootstrap_weights(specimen, 0)
+    ill, found = truths.damaged > 0.0, dict[str, Any]()
+    for name in ("damage", *dict.fromkeys(labels["state"][ill].tolist())):
+        asked = ~ill | (ill if name == "damage" else labels["state"] == name)
+        found[f"auc_{name}"] = asdict(area(damage[asked], ill[asked], weights[:, asked], specimen[asked]))
+    for name, said, place in (("kind", told.kind, truths.kind), ("gear", told.gear, truths.gear)):
+        known = place != NOWHERE
+        if known.any():
+            found[f"{name}_named_rightly"] = float((said.numpy().argmax(axis=1)[known] == place[known]).mean())
+    sized = np.isfinite(truths.size)
+    if sized.any():
+        low, middle, high = told.size.numpy()[sized].T
+        own = truths.size[sized]
+        found["size_in_interval"] = float(((low <= own) & (own <= high)).mean())
+        found["size_interval_factor"] = float(np.exp(np.median(high - low)))
+        found["size_median_factor"] = float(np.exp(np.median(np.abs(middle - own))))
+    return found

@@ -1,0 +1,142 @@
+"""A network that learns from streamed gearboxes: what it tells, and that it goes on to the bit where it was stopped."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+import diagnostics
+from diagnostics.statistics.evaluation import weighted_auc
+from diagnostics.training.gear_rows import ALONE, ROWS, STEPS
+from diagnostics.training.gearbox_network import (
+    NOWHERE,
+    GearboxNetwork,
+    Truths,
+    load_gearbox_network,
+    save_gearbox_network,
+    tell,
+    told_loss,
+)
+from diagnostics.training.loop import LoopSettings, fit_network, seeded
+from diagnostics.training.pretraining import CARD, WEIGHTS, PretrainingSettings
+from siggen.errors import UsageError
+
+KINDS = ("crack", "spalling")
+FAMILY = """
+extends: quickstart
+specimens: 1
+duration_s: 0.35
+splits: {train: 12, validation: 4, test: 4}
+states:
+  others: null
+  healthy: {}
+  healthy_again: {}
+  spall:
+    damage:
+      kind: irregular
+      gear: either
+      profile_length_mm: 1.0
+      face_share: 0.5
+      skew_mm_per_10mm: [-0.18, 0.18]
+      waviness: [0.05, 0.1]
+      edge_radius_mm: [0.02, 0.2]
+"""
+
+
+def planted(rng: np.random.Generator, records: int) -> tuple[np.ndarray, Truths]:
+    """Return noise of two gears, in half of the records with an event of 7 sigma on one of them, of two lengths."""
+    rows = np.zeros((records, 1, 2, ROWS, STEPS), dtype=np.float16)
+    rows[..., :ALONE, :] = rng.standard_normal((records, 1, 2, ALONE, STEPS))
+    gear, kind = rng.integers(0, 2, records), rng.integers(0, 2, records)
+    ill = np.arange(records) % 2 == 1
+    for record in np.flatnonzero(ill):
+        steps = (rng.integers(STEPS) + np.arange(1 + 5 * kind[record])) % STEPS
+        rows[record, 0, gear[record], 0, steps] += 7.0 * (-1.0) ** np.arange(steps.size)
+    size = np.where(ill, np.log(0.02 + 0.1 * kind), np.nan).astype(np.float32)
+    return rows, Truths(ill.astype(np.float32), np.where(ill, kind, NOWHERE), np.where(ill, gear, NOWHERE), size)
+
+
+def test_planted_events_are_found_named_and_placed_in_records_that_were_not_learnt_from() -> None:
+    rng = np.random.default_rng(0)
+    (rows, truths), (asked, known) = planted(rng, 240), planted(rng, 120)
+    with seeded(0):
+        network = GearboxNetwork(KINDS, (8, 8))
+
+        def batches(_: int) -> Iterator[torch.Tensor]:
+            for place in np.split(rng.permutation(len(rows)), 8):
+                yield told_loss(network(torch.from_numpy(rows[place, 0].astype(np.float32))), truths.chosen(place), 0.5)
+
+        fit_network(network, batches, None, LoopSettings(12, 1e-2, 0.1, falling=True))
+        told = tell(network, asked)
+    ill = known.damaged > 0.0
+    found = weighted_auc(told.damage.double().numpy(), ill, np.ones((1, ill.size)), np.arange(ill.size))
+    assert found[0] > 0.95
+    assert (told.gear.numpy().argmax(axis=1)[ill] == known.gear[ill]).mean() > 0.95
+    assert (told.kind.numpy().argmax(axis=1)[ill] == known.kind[ill]).mean() > 0.8
+
+
+def test_what_is_told_depends_on_neither_the_first_tooth_nor_the_order_of_gears() -> None:
+    rows, _ = planted(np.random.default_rng(1), 6)
+    with seeded(1):
+        network = GearboxNetwork(KINDS).eval()
+    plain, turned = tell(network, rows), tell(network, np.roll(rows, 64, axis=-1))  # all strides together: 8 steps
+    swapped = tell(network, rows[:, :, ::-1])
+    for name in ("damage", "kind", "size"):
+        assert torch.allclose(getattr(plain, name), getattr(turned, name), atol=1e-4)
+        assert torch.allclose(getattr(plain, name), getattr(swapped, name), atol=1e-4)
+    assert torch.allclose(plain.gear, swapped.gear.flip(1), atol=1e-4)
+    assert (plain.size.diff(dim=1) > 0.0).all()
+
+
+def test_the_file_is_small_and_gives_the_network_back(tmp_path: Path) -> None:
+    rows, _ = planted(np.random.default_rng(2), 4)
+    with seeded(2):
+        network = GearboxNetwork(KINDS).eval()
+    save_gearbox_network(network, tmp_path / WEIGHTS)
+    again = load_gearbox_network(tmp_path / WEIGHTS)
+    assert sum(weight.numel() for weight in network.parameters()) <= 500_000
+    assert (tmp_path / WEIGHTS).stat().st_size <= 5e6
+    assert again.kinds == KINDS
+    assert torch.equal(tell(network, rows).damage, tell(again, rows).damage)
+    (tmp_path / "other").write_bytes(b"no weights")
+    with pytest.raises(UsageError, match="cannot be read as safetensors"):
+        load_gearbox_network(tmp_path / "other")
+
+
+class Stopped(Exception):
+    """The process is ended."""
+
+
+def test_a_training_that_was_stopped_twice_ends_with_the_same_bytes(tmp_path: Path) -> None:
+    family = tmp_path / "family.yaml"
+    family.write_text(FAMILY)
+    settings = PretrainingSettings((str(family),), gearboxes=4, mixed=2, passes=3, batch=8, widths=(4, 4))
+
+    def stopping(at: str) -> None:
+        def say(line: str) -> None:
+            if line.startswith(at):
+                raise Stopped
+
+        with pytest.raises(Stopped):
+            diagnostics.pretrain(tmp_path / "stopped", settings, workers=1, say=say)
+
+    stopping("family 1 of 1: 2 gearboxes")
+    assert diagnostics.pretrain(tmp_path / "stopped", settings, workers=1, minutes=0.0) is None
+    stopping("pass 2 of 3")
+    threads = torch.get_num_threads()
+    torch.set_num_threads(2)
+    try:
+        whole = diagnostics.pretrain(tmp_path / "whole", settings, workers=1)
+    finally:
+        torch.set_num_threads(threads)
+    gone_on = diagnostics.pretrain(tmp_path / "stopped", settings, workers=1)
+    assert whole == gone_on
+    assert json.loads((tmp_path / "whole" / CARD).read_text()) == json.loads(json.dumps(whole))
+    assert (tmp_path / "whole" / WEIGHTS).read_bytes() == (tmp_path / "stopped" / WEIGHTS).read_bytes()
+    with pytest.raises(UsageError, match="holds a training with other passes, seed; allowed: another folder"):
+        diagnostics.pretrain(tmp_path / "whole", PretrainingSettings((str(family),), 4, 2, 5, 8, widths=(4, 4), seed=1))
