@@ -3,9 +3,9 @@
     diagnostics.pretrain("runs/pretrained", minutes=75)   # again: goes on, until everything is done
 
 First every family streams its gearboxes. Of a record only the averages of its gears are kept, 16 KB for two channels:
-thousands of gearboxes then fit in memory, and every pass mixes all of them. (Of a stream that is used up block by block
-a network has forgotten the first gearboxes when the last ones come.) Then the network passes over them. Its weights
-depend on families, numbers and seed alone, not on the minutes of a call, on interruptions or on the number of cores.
+thousands of gearboxes then fit in memory, and every pass mixes all of them. Then the network passes over them. Its
+weights depend on families, numbers and seed alone, not on the minutes of a call, on interruptions or on the number of
+cores.
 
 What it is judged on are pairs of gears that no record it has learnt from had: the split `test` of the families. The
 split `validation` widens intervals of the size.

@@ -17,9 +17,10 @@ from siggen.file_writing import write_file
 
 
 def save_weights(network: nn.Module, path: Path, form: str, facts: Mapping[str, Any]) -> None:
-    """Write weights and facts; the facts are JSON under the metadata key `facts`, beside the `format`."""
+    """Write weights and facts: JSON with the `format`, under the one metadata key `facts`."""
     weights = {name: value.contiguous() for name, value in network.state_dict().items()}
-    write_file(path, save(weights, metadata={"format": form, "facts": json.dumps(dict(facts))}))
+    # one key: safetensors writes several in an order of its own, another one at every call
+    write_file(path, save(weights, metadata={"facts": json.dumps({"format": form, **facts})}))
 
 
 def read_facts(path: Path, form: str) -> Any:
@@ -35,12 +36,14 @@ def read_facts(path: Path, form: str) -> Any:
             metadata = file.metadata() or {}
     except (OSError, SafetensorError) as error:
         raise UsageError(f"{path}: cannot be read as safetensors ({error})") from error
-    if metadata.get("format") != form:
-        raise UsageError(f"{path}: received format {metadata.get('format')!r}; allowed is {form!r}")
     try:
-        return json.loads(metadata["facts"])
-    except (KeyError, ValueError) as error:
+        facts = json.loads(metadata.get("facts", "{}"))
+    except ValueError as error:
         raise other_schema(path, error) from error
+    held = facts.get("format") if isinstance(facts, dict) else None
+    if held != form:
+        raise UsageError(f"{path}: received format {held!r}; allowed is {form!r}")
+    return facts
 
 
 def load_weights(network: nn.Module, path: Path) -> None:
