@@ -151,7 +151,7 @@ def pretrain(
     minutes : float, optional
         After which the call ends at the next place from which it can go on; by default when all is done.
     workers : int, optional
-        Processes that simulate, by default one per core.
+        Processes that simulate, by default one per core; 0: this process.
     say : callable, optional
         Takes a line on how far it is.
 
@@ -191,9 +191,8 @@ def _averages(
     """Return the averages of all families, after those that are missing were simulated."""
     designs = [siggen.load_config(name) for name in chosen.families]
     blocks = -(-chosen.gearboxes // (len(designs) * chosen.mixed))
-    streams = [
-        partial(siggen.stream, design, mixed=chosen.mixed, seed=chosen.seed, workers=workers) for design in designs
-    ]
+    by = {"executor": "serial"} if workers == 0 else {"workers": workers}
+    streams = [partial(siggen.stream, design, mixed=chosen.mixed, seed=chosen.seed, **by) for design in designs]
     _keep_plan(home, chosen, [stream(first_gearbox=0).state_dict() for stream in streams])
     for family, begun in enumerate(streams):
         done = next((number for number in range(blocks) if not _block(home, family, number).exists()), blocks)

@@ -115,7 +115,7 @@ class Stopped(Exception):
 def test_a_training_that_was_stopped_twice_ends_with_the_same_bytes(tmp_path: Path) -> None:
     family = tmp_path / "family.yaml"
     family.write_text(FAMILY)
-    settings = PretrainingSettings((str(family),), gearboxes=4, mixed=2, passes=3, batch=8, widths=(4, 4))
+    settings = PretrainingSettings((str(family),), gearboxes=3, mixed=1, passes=3, batch=8, widths=(4, 4))
 
     def stopping(at: str) -> None:
         def say(line: str) -> None:
@@ -123,20 +123,20 @@ def test_a_training_that_was_stopped_twice_ends_with_the_same_bytes(tmp_path: Pa
                 raise Stopped
 
         with pytest.raises(Stopped):
-            diagnostics.pretrain(tmp_path / "stopped", settings, workers=1, say=say)
+            diagnostics.pretrain(tmp_path / "stopped", settings, workers=0, say=say)
 
-    stopping("family 1 of 1: 2 gearboxes")
-    assert diagnostics.pretrain(tmp_path / "stopped", settings, workers=1, minutes=0.0) is None
+    stopping("family 1 of 1: 1 gearboxes")
+    assert diagnostics.pretrain(tmp_path / "stopped", settings, workers=0, minutes=0.0) is None
     stopping("pass 2 of 3")
     threads = torch.get_num_threads()
     torch.set_num_threads(2)
     try:
-        whole = diagnostics.pretrain(tmp_path / "whole", settings, workers=1)
+        whole = diagnostics.pretrain(tmp_path / "whole", settings, workers=0)
     finally:
         torch.set_num_threads(threads)
-    gone_on = diagnostics.pretrain(tmp_path / "stopped", settings, workers=1)
+    gone_on = diagnostics.pretrain(tmp_path / "stopped", settings, workers=0)
     assert whole == gone_on
     assert json.loads((tmp_path / "whole" / CARD).read_text()) == json.loads(json.dumps(whole))
     assert (tmp_path / "whole" / WEIGHTS).read_bytes() == (tmp_path / "stopped" / WEIGHTS).read_bytes()
     with pytest.raises(UsageError, match="holds a training with other passes, seed; allowed: another folder"):
-        diagnostics.pretrain(tmp_path / "whole", PretrainingSettings((str(family),), 4, 2, 5, 8, widths=(4, 4), seed=1))
+        diagnostics.pretrain(tmp_path / "whole", PretrainingSettings((str(family),), 3, 1, 5, 8, widths=(4, 4), seed=1))
