@@ -130,7 +130,7 @@ class GearboxNetwork(nn.Module):  # type: ignore[misc]
 
 
 @dataclass(frozen=True, slots=True)
-class Truths:
+class DamageTruth:
     """What is true of records.
 
     Attributes
@@ -148,18 +148,18 @@ class Truths:
     gear: np.ndarray
     size: np.ndarray
 
-    def chosen(self, places: np.ndarray) -> Truths:
+    def chosen(self, places: np.ndarray) -> DamageTruth:
         """Return some of the records."""
-        return Truths(self.damaged[places], self.kind[places], self.gear[places], self.size[places])
+        return DamageTruth(self.damaged[places], self.kind[places], self.gear[places], self.size[places])
 
 
-def told_loss(told: Told, truths: Truths, damaged_share: float) -> torch.Tensor:
+def told_loss(told: Told, truths: DamageTruth, damaged_share: float) -> torch.Tensor:
     """Return the loss of a batch; both sides of damage weigh the same.
 
     Parameters
     ----------
     told : Told
-    truths : Truths
+    truths : DamageTruth
         Of the same records.
     damaged_share : float
         Of all records to learn from.

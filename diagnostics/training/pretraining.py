@@ -36,9 +36,9 @@ from diagnostics.training.gearbox_network import (
     NOWHERE,
     QUANTILES,
     WIDTHS,
+    DamageTruth,
     GearboxNetwork,
     Told,
-    Truths,
     save_gearbox_network,
     tell,
     told_loss,
@@ -269,11 +269,11 @@ def _rows(kept: KeptRecords) -> np.ndarray:
     return gear_rows(kept.averages, healthy)
 
 
-def _truths(kept: KeptRecords, kinds: Sequence[str]) -> Truths:
+def _truths(kept: KeptRecords, kinds: Sequence[str]) -> DamageTruth:
     fault, gear = kept.labels["fault"], kept.labels["faulty_gear"]
     with np.errstate(divide="ignore"):
         size = np.log(kept.labels["damaged_area_share"].astype(np.float32))
-    return Truths(
+    return DamageTruth(
         damaged=(fault != HEALTHY).astype(np.float32),
         kind=np.array([kinds.index(name) if name in kinds else NOWHERE for name in fault.tolist()]),
         gear=np.array([GEARS.index(name) if name in GEARS else NOWHERE for name in gear.tolist()]),
@@ -283,7 +283,7 @@ def _truths(kept: KeptRecords, kinds: Sequence[str]) -> Truths:
 
 def _trained(
     home: Path, chosen: PretrainingSettings, kept: KeptRecords, check: Callable[[], None], say: Say
-) -> tuple[GearboxNetwork, np.ndarray, Truths]:
+) -> tuple[GearboxNetwork, np.ndarray, DamageTruth]:
     """Return the network at its last pass, with the rows and the truth of all records."""
     learn = kept.of_split(TRAIN)
     faults = set(kept.labels["fault"][learn].tolist()) - {HEALTHY}
@@ -323,7 +323,7 @@ def _moved(rows: np.ndarray, rng: np.random.Generator, alone: float) -> torch.Te
 
 
 def _finished(
-    home: Path, kept: KeptRecords, network: GearboxNetwork, rows: np.ndarray, truths: Truths
+    home: Path, kept: KeptRecords, network: GearboxNetwork, rows: np.ndarray, truths: DamageTruth
 ) -> dict[str, Any]:
     """Write weights and card; return the card."""
     with seeded(0):
@@ -361,7 +361,7 @@ def _has_healthy(rows: np.ndarray) -> np.ndarray:
     return np.asarray((rows[:, :, :, ALONE:] != 0.0).any(axis=(1, 2, 3, 4)))
 
 
-def _widen(network: GearboxNetwork, rows: np.ndarray, truths: Truths, places: np.ndarray) -> None:
+def _widen(network: GearboxNetwork, rows: np.ndarray, truths: DamageTruth, places: np.ndarray) -> None:
     """Widen intervals of the size so that they hold as many of the records left out as they say."""
     places = places[np.isfinite(truths.size[places])]
     if not places.size:
@@ -376,7 +376,7 @@ def _widen(network: GearboxNetwork, rows: np.ndarray, truths: Truths, places: np
     network.size_widening.fill_(float(found[min(rank, found.size - 1)]))
 
 
-def _scores(network: GearboxNetwork, kept: KeptRecords, rows: np.ndarray, truths: Truths) -> dict[str, Any]:
+def _scores(network: GearboxNetwork, kept: KeptRecords, rows: np.ndarray, truths: DamageTruth) -> dict[str, Any]:
     """Return what the network tells of unseen pairs, alone and beside a healthy record."""
     places = kept.of_split(TEST)
     beside = places[_has_healthy(rows[places])]
@@ -387,7 +387,7 @@ def _scores(network: GearboxNetwork, kept: KeptRecords, rows: np.ndarray, truths
     }
 
 
-def _scores_of(told: Told, truths: Truths, labels: Mapping[str, np.ndarray]) -> dict[str, Any]:
+def _scores_of(told: Told, truths: DamageTruth, labels: Mapping[str, np.ndarray]) -> dict[str, Any]:
     damage, specimen = told.damage.double().numpy(), labels["specimen_id"]
     weights = bootstrap_weights(specimen, 0)
     ill, found = truths.damaged > 0.0, dict[str, Any]()

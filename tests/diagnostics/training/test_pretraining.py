@@ -15,8 +15,8 @@ from diagnostics.statistics.evaluation import weighted_auc
 from diagnostics.training.gear_rows import ALONE, ROWS, STEPS
 from diagnostics.training.gearbox_network import (
     NOWHERE,
+    DamageTruth,
     GearboxNetwork,
-    Truths,
     load_gearbox_network,
     save_gearbox_network,
     tell,
@@ -48,7 +48,7 @@ states:
 """
 
 
-def planted(rng: np.random.Generator, records: int) -> tuple[np.ndarray, Truths]:
+def planted(rng: np.random.Generator, records: int) -> tuple[np.ndarray, DamageTruth]:
     """Return noise of two gears, in half of the records with an event of 7 sigma on one of them, of two lengths."""
     rows = np.zeros((records, 1, 2, ROWS, STEPS), dtype=np.float16)
     rows[..., :ALONE, :] = rng.standard_normal((records, 1, 2, ALONE, STEPS))
@@ -58,7 +58,7 @@ def planted(rng: np.random.Generator, records: int) -> tuple[np.ndarray, Truths]
         steps = (rng.integers(STEPS) + np.arange(1 + 5 * kind[record])) % STEPS
         rows[record, 0, gear[record], 0, steps] += 7.0 * (-1.0) ** np.arange(steps.size)
     size = np.where(ill, np.log(0.02 + 0.1 * kind), np.nan).astype(np.float32)
-    return rows, Truths(ill.astype(np.float32), np.where(ill, kind, NOWHERE), np.where(ill, gear, NOWHERE), size)
+    return rows, DamageTruth(ill.astype(np.float32), np.where(ill, kind, NOWHERE), np.where(ill, gear, NOWHERE), size)
 
 
 def test_planted_events_are_found_named_and_placed_in_records_that_were_not_learnt_from() -> None:
