@@ -382,16 +382,7 @@ def undefined_html(found: Sequence[IndicatorResult], left_out: Mapping[str, floa
 
 def definition_html(held: Collection[str]) -> TableBlock:
     """Return the definitions of the indicators that are taken of these quantities."""
-    head = [
-        "Column starts with",
-        "Indicator",
-        "Taken from",
-        "Value",
-        "Unit",
-        "On known signals",
-        "Undefined when",
-        "Source",
-    ]
+    head = ["Column starts with", "Indicator", "Taken from", "Value", "Unit", "On known signals"]
     rows = [
         (
             Cell(d.name, name=f"term-{d.name}", hint=f"{d.formula}; from {d.signal}"),

@@ -117,6 +117,14 @@ def test_page_loads_nothing_from_elsewhere(folder: Path) -> None:
     assert 'name="viewport"' in text
 
 
+def test_every_row_of_a_table_has_a_cell_below_each_head(folder: Path) -> None:
+    tables = re.findall(r"<table class.*?</table>", (folder / "report.html").read_text(), re.DOTALL)
+    assert len(tables) > 10
+    for table in tables:
+        heads, body = table.count('scope="col"'), table.split("<tbody>")[1]
+        assert {row.count("</td>") + row.count("</th>") for row in body.split("</tr>")[:-1]} == {heads}, table[:200]
+
+
 def test_every_link_leads_to_a_place_on_the_page(folder: Path) -> None:
     text = re.sub(r"(?s)<script>.*?</script>", "", (folder / "report.html").read_text())
     places = re.findall(r' id="([^"]*)"', text)
