@@ -146,7 +146,7 @@ def main() -> None:
     parser.add_argument("--gearboxes", type=int, default=SIZES[-1])
     parser.add_argument("--png", type=Path)
     asked = parser.parse_args()
-    sizes = [size for size in SIZES if size <= asked.gearboxes]
+    sizes = sorted({*(size for size in SIZES if size < asked.gearboxes), asked.gearboxes})
     data, curves = taken(asked.folder, JUDGED + asked.gearboxes), Curves()
     judged = data["gearbox"] < JUDGED
     for size in sizes:
