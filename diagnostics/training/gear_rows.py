@@ -120,11 +120,27 @@ def gear_rows(records: GearLines, healthy: np.ndarray | None = None) -> np.ndarr
             continue
         known = np.isfinite(healthy[:, 0, gear, 0])
         own = residual_lines(healthy[known, :, gear].astype(np.complex128), teeth[known])
+        own = _turned(own, residual[known], teeth[known])
         change = residual[known] - own
         for row, (part, whole) in enumerate(
             ((change, own), (innovations(change, teeth[known], own), innovations(own, teeth[known]))), ALONE
         ):
             found[known, :, gear, row] = _compressed(_wave(part) / _size(_wave(whole)))
+    return found
+
+
+def _turned(healthy: np.ndarray, lines: np.ndarray, teeth: np.ndarray) -> np.ndarray:
+    """Return healthy lines (records, channels, orders) turned by whole teeth to where they are most like the others.
+
+    Pulses tell which tooth of the first shaft is where; a driven gear begins every record with another one.
+    """
+    order = np.arange(lines.shape[-1])
+    found = np.empty_like(healthy)
+    for row, count in enumerate(teeth.tolist()):
+        folded = np.zeros(count, dtype=np.complex128)  # orders that whole teeth turn alike
+        np.add.at(folded, order % count, (lines[row] * healthy[row].conj()).sum(axis=0))
+        tooth = int(np.fft.ifft(folded).real.argmax())
+        found[row] = healthy[row] * np.exp(-2j * np.pi * order * tooth / count)
     return found
 
 

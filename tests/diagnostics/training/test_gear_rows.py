@@ -61,6 +61,19 @@ def test_a_change_is_told_in_parts_of_the_healthy_record_and_nothing_where_there
     assert rows_of([healthy], pulses)[:, :, 2:].max() == 0.0
 
 
+def test_a_driven_gear_that_began_with_another_tooth_has_not_changed() -> None:
+    rng = np.random.default_rng(4)
+    lines, order = np.zeros((1, 2, 2, STEPS // 2), dtype=np.complex64), np.arange(STEPS // 2)
+    lines[..., 9:400] = rng.standard_normal((1, 2, 2, 391)) + 1j * rng.standard_normal((1, 2, 2, 391))
+    teeth = np.array([TEETH])
+    for begun in (0, 5, 46):
+        healthy = lines * np.exp(-2j * np.pi * order * np.array([[0], [begun]]) / np.array([[18], [47]]))
+        found = gear_rows(GearLines(lines, teeth), healthy.astype(np.complex64))[..., 2:, :]
+        assert np.abs(found).max() < 1e-4  # of 1; complex64
+    half = lines * np.exp(-2j * np.pi * order * 2.5 / 47)  # no whole teeth: another gear
+    assert np.abs(gear_rows(GearLines(lines, teeth), half.astype(np.complex64))[:, :, 1, 2:]).max() > 1.0
+
+
 def test_a_record_without_a_turn_is_refused_in_words() -> None:
     with pytest.raises(UsageError, match="received 1 pulses; allowed: 2 or more"):
         gear_lines({"lid": np.zeros(100)}, np.zeros(1), FS_HZ, TEETH)
