@@ -120,7 +120,8 @@ def gear_rows(records: GearLines, healthy: np.ndarray | None = None) -> np.ndarr
             continue
         known = np.isfinite(healthy[:, 0, gear, 0])
         own = residual_lines(healthy[known, :, gear].astype(np.complex128), teeth[known])
-        own = _turned(own, residual[known], teeth[known])
+        if gear:  # pulses tell the teeth of the first one
+            own = _turned(own, residual[known], teeth[known])
         change = residual[known] - own
         for row, (part, whole) in enumerate(
             ((change, own), (innovations(change, teeth[known], own), innovations(own, teeth[known]))), ALONE
