@@ -49,9 +49,12 @@ from diagnostics.audit.raw_records import (
     CLOCK,
     CODE_LAW,
     COURSE,
+    ECHOES,
     EDGES,
     ENDS,
     LINES,
+    LOCKED,
+    LOW_BITS,
     OFFSETS,
     PHASES,
     STORED,
@@ -195,7 +198,7 @@ def _wins(larger: np.ndarray, learnt: np.ndarray) -> np.ndarray:
     return np.stack([0.5 + 0.5 * np.sign(larger - row).mean(axis=0) for row in learnt])
 
 
-OF_TEETH = frozenset({NOISE, CHANNELS, ENDS, LINES, LAGS, LEVELS})
+OF_TEETH = frozenset({NOISE, CHANNELS, ENDS, LINES, LAGS, LEVELS, ECHOES})
 """Layers that single damaged teeth cannot move, and other faults can."""
 
 PERMUTATIONS = 99
@@ -219,6 +222,9 @@ MENDS = {
     CODE_LAW: "Send all states through one converter and one program, which round every sample alike.",
     COURSE: "Record all states with gains that stay as they are.",
     PHASES: "Start records at any time of the machines near, in all states.",
+    LOCKED: "Start records at any time, locked to no mains and no trigger, and add nothing to them.",
+    LOW_BITS: "Write all samples as the converter gave them; hide no mark in their lowest bits.",
+    ECHOES: "Record and process all states by one chain, without echo and delay.",
     BLOCKS: "Record all states without losing samples between blocks.",
     ENDS: "Draw noise per gearbox by one law for all states, and filter all states alike.",
     CLOCK: "Record the tacho with the channels, by one clock, in all states.",

@@ -30,6 +30,7 @@ equal bands to the last bin below half the rate. They accuse where they tell a s
   is alike, and cut where lines stand out. Four parts of it, of two octaves each but the lowest, are products of their
   own: one tone is lost among all lines. The course of the level is the power of 64 parts of the record in decibels,
   less their mean. A second spectrum begins at the first pulse.
+* Locked, low bits, echoes: phases of fixed frequencies, lowest bits of fixed samples, fixed lags (`fixed_times`).
 
 Source: derived.
 """
@@ -45,6 +46,16 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
+from diagnostics.audit.fixed_times import (
+    component_columns,
+    echo_codes,
+    echo_columns,
+    locked_columns,
+    parity_bits,
+    parity_product,
+    phase_codes,
+    phase_product,
+)
 from diagnostics.audit.spectral_shape import floor_levels
 from diagnostics.audit.stored_codes import code_law
 from diagnostics.judging.evaluation import Entry
@@ -545,7 +556,8 @@ def template_attackers(products: dict[str, np.ndarray]) -> list[Entry]:
 
 EDGES, OFFSETS, LINES, STORED, ENDS, CLOCK = "edges", "offsets", "lines", "samples", "ends", "clock"
 CODE_LAW, COURSE, BLOCKS, PHASES = "codes", "course", "blocks", "phases"
-OF_NO_GEARBOX = frozenset({CODE_LAW, COURSE, BLOCKS, PHASES})
+LOCKED, LOW_BITS, ECHOES = "locked", "low_bits", "echoes"
+OF_NO_GEARBOX = frozenset({CODE_LAW, COURSE, BLOCKS, PHASES, LOCKED, LOW_BITS, ECHOES})
 """Layers that have one law for all gearboxes: beside a reference they only scatter more."""
 
 EIGHTHS = 8
@@ -603,6 +615,9 @@ class _RawRecord:
     orders: np.ndarray
     course: np.ndarray
     floors: dict[str, np.ndarray]
+    phases: dict[str, np.ndarray]
+    low_bits: dict[str, np.ndarray]
+    echoes: dict[str, np.ndarray]
 
 
 def raw_columns(records: Iterable[Recording]) -> RawColumns:
@@ -617,6 +632,13 @@ def raw_columns(records: Iterable[Recording]) -> RawColumns:
     layers[STORED] = without_ends(layers[STORED])
     layers[LINES] = line_columns([one.lines for one in found])
     layers[PHASES] = phase_columns([one.orders for one in found])
+    channels = tuple(found[0].floors)
+    phases = {f"phases of {name}": phase_product([one.phases[name] for one in found]) for name in channels}
+    layers[LOCKED] = locked_columns([one.phases for one in found]) | component_columns(phases)
+    layers[LOW_BITS] = component_columns(
+        {f"low bits of {name}": parity_product([one.low_bits[name] for one in found]) for name in channels}
+    )
+    layers[ECHOES] = echo_columns([one.echoes for one in found], fs_hz)
     codes = {
         IN_PARTS: [one.codes for one in found],
         "spectra from the first pulse": [one.from_pulse for one in found],
@@ -656,6 +678,9 @@ def _raw_record(record: Recording) -> _RawRecord:
         np.concatenate([order_codes(x, record.fs_hz, record.tacho_s) for x in held.values()]),
         np.concatenate([level_course(x) for x in held.values()]),
         {name: floor_levels(x) for name, x in held.items()},
+        {name: phase_codes(x) for name, x in held.items()},
+        {name: parity_bits(signal) for name, signal in record.channels.items()},
+        {name: echo_codes(x, record.fs_hz, rates) for name, x in held.items()},
     )
 
 

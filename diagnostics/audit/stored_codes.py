@@ -41,7 +41,7 @@ def code_law(channels: Mapping[str, np.ndarray]) -> dict[str, float]:
     channels : mapping of str to (n,) float
         Samples as they are stored.
     """
-    codes = {name: _codes(signal) for name, signal in channels.items()}
+    codes = {name: stored_codes(signal) for name, signal in channels.items()}
     found = {f"{what} of {name}": value for name, own in codes.items() for what, value in _of_channel(own).items()}
     for first, second in combinations(codes, 2):
         alike = codes[first].size == codes[second].size
@@ -49,8 +49,14 @@ def code_law(channels: Mapping[str, np.ndarray]) -> dict[str, float]:
     return found
 
 
-def _codes(signal: np.ndarray) -> np.ndarray:
-    """Return samples in steps of their converter, (n,) int64; empty where these are no codes, or too few apart."""
+def stored_codes(signal: np.ndarray) -> np.ndarray:
+    """Return samples in steps of their converter, (n,) int64; empty where these are no codes, or too few apart.
+
+    Parameters
+    ----------
+    signal : (n,) float
+        Samples as they are stored.
+    """
     step = 2.0 ** sample_bytes(signal)["converter_step_log2"]
     if not math.isfinite(step):
         return np.empty(0, np.int64)

@@ -22,13 +22,14 @@ import siggen  # noqa: E402
 from diagnostics.audit.measured_set import measured_set  # noqa: E402
 from diagnostics.audit.traps import separability_findings  # noqa: E402
 from diagnostics.base.single_thread import single_thread  # noqa: E402
+from tests.diagnostics.planted.fixed_leaks import FIXED_LEAKS  # noqa: E402
 from tests.diagnostics.planted.further_leaks import FURTHER_LEAKS  # noqa: E402
 from tests.diagnostics.planted.label_leaks import LABEL_LEAKS  # noqa: E402
 from tests.diagnostics.planted.leak import Leak  # noqa: E402
 from tests.diagnostics.planted.planted_copy import planted_copy  # noqa: E402
 from tests.diagnostics.planted.signal_leaks import SIGNAL_LEAKS  # noqa: E402
 
-LEAKS = {"nothing": Leak("nothing", "nothing"), **SIGNAL_LEAKS, **LABEL_LEAKS, **FURTHER_LEAKS}
+LEAKS = {"nothing": Leak("nothing", "nothing"), **SIGNAL_LEAKS, **LABEL_LEAKS, **FURTHER_LEAKS, **FIXED_LEAKS}
 
 
 def findings(source: Path, folder: Path, leak: Leak) -> list[str]:

@@ -13,13 +13,18 @@ import pytest
 import siggen
 from tests.command import command
 from tests.dataset.fake_set import STEP_M_S2, file_bytes, write_fake_set
+from tests.diagnostics.planted.fixed_leaks import FIXED_LEAKS
 from tests.diagnostics.planted.further_leaks import FURTHER_LEAKS
 from tests.diagnostics.planted.label_leaks import LABEL_LEAKS
 from tests.diagnostics.planted.leak import Leak
 from tests.diagnostics.planted.planted_copy import channel_columns, converter_step, damaged, planted, planted_copy
 from tests.diagnostics.planted.signal_leaks import SIGNAL_LEAKS
 
-IN_SIGNALS = [*SIGNAL_LEAKS.values(), *(leak for leak in FURTHER_LEAKS.values() if not leak.labels)]
+IN_SIGNALS = [
+    *SIGNAL_LEAKS.values(),
+    *(leak for leak in FURTHER_LEAKS.values() if not leak.labels),
+    *FIXED_LEAKS.values(),
+]
 IN_LABELS = [*LABEL_LEAKS.values(), *(leak for leak in FURTHER_LEAKS.values() if leak.labels)]
 
 
