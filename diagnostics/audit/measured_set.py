@@ -3,7 +3,8 @@
 For every record a healthy record of the same specimen at the same operating point, and which records are alike.
 
 A program that writes tables may leave in their metadata which records it treated, by their ids: siggen's own metadata
-name none. What others name counts as a label.
+name none. What others name counts as a label. So does what share of its file a record's row group holds: a program that
+treats some records and writes them by themselves cuts files where states change.
 """
 
 from __future__ import annotations
@@ -64,6 +65,21 @@ def _metadata_texts(schema: pa.Schema) -> Iterator[tuple[str, str]]:
 
 def _ids(text: str) -> list[int]:
     return [int(number) for number in re.findall(r"(?<![\w.])\d{1,18}(?![\w.])", text)]
+
+
+def group_shares(groups: Iterable[tuple[int, ...]]) -> dict[str, np.ndarray]:
+    """Return the share of the rows of its file that the row group of every record holds, (records,) float64, by name.
+
+    Nothing where each file is one group.
+
+    Parameters
+    ----------
+    groups : iterable of tuple of int
+        Rows of the groups of every file, in the order of the records.
+    """
+    found = [np.repeat(np.array(rows) / max(sum(rows), 1), rows) for rows in groups]
+    shares = np.concatenate(found) if found else np.ones(0)
+    return {"share of the file in its row group": shares} if (shares < 1.0).any() else {}
 
 
 TORQUE_TOLERANCE = 0.01
@@ -251,6 +267,7 @@ def measured_set(
     check_table(table, dataset)
     labels = {name: _array(column) for name, column in _scalar_labels(dataset).items()}
     labels |= noted_records((dataset.labels(split).schema for split in dataset.splits), labels["record_id"])
+    labels |= group_shares(dataset.row_groups())
     if not np.array_equal(table.labels()["record_id"], labels["record_id"]):
         raise DatasetError(f"{dataset.path}: labels and signals are not in the same order; `siggen verify` names why")
     indicators = _indicators(table)

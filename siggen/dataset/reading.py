@@ -20,7 +20,7 @@ from siggen.columns.record import TACHO_COLUMN, ChannelColumn, signal_matrix
 from siggen.dataset.inventory import Inventory, ListedColumn, ListedShard, PromisedFile
 from siggen.dataset.manifest import BLIND, CARD, CONFIG, INJECTED, read_manifest
 from siggen.dataset.object_name import DAMAGE, LABELS, LIFE_FOLDER, SPLITS, life_name
-from siggen.dataset.shard import ABOUT, columns_of, unpacked
+from siggen.dataset.shard import ABOUT, columns_of, group_rows, unpacked
 from siggen.dataset.storage import HOW_TO_GO_ON, Storage
 from siggen.dataset.storage_at import storage_at
 from siggen.dataset.table_form import check_form, form_of
@@ -198,6 +198,10 @@ class Dataset:
         """
         wanted = self._splits(split)
         return tuple(shard for shard in self.inventory.shards if shard.split in wanted)
+
+    def row_groups(self) -> tuple[tuple[int, ...], ...]:
+        """Return how many rows each row group of every shard has, in the order of the labels; siggen writes one."""
+        return tuple(group_rows(self.content(shard.file)) for shard in self.shards())
 
     def shard_rows(self, shard: ListedShard, columns: Sequence[str] | None = None) -> pa.RecordBatch:
         """Return the rows of one shard with signals, by any process and in any order.

@@ -106,6 +106,12 @@ def columns_of(content: bytes) -> list[str]:
         return list(file.schema_arrow.names)
 
 
+def group_rows(content: bytes) -> tuple[int, ...]:
+    """Return how many rows each row group of a table has. Raises as `unpacked`."""
+    with _opened(content, hashed=True) as file:
+        return tuple(file.metadata.row_group(group).num_rows for group in range(file.num_row_groups))
+
+
 @contextmanager
 def _opened(content: bytes, *, hashed: bool = False) -> Iterator[pq.ParquetFile]:
     try:

@@ -118,6 +118,9 @@ class MemoryDataset(ListedRoles):
             ListedShard(shard=f"{split}-{k:05d}", rows=min(ROWS, rows - k * ROWS)) for k in range(-(-rows // ROWS))
         )
 
+    def row_groups(self) -> tuple[tuple[int, ...], ...]:
+        return ((self.table.num_rows,),)
+
     def shard_rows(self, shard: ListedShard, columns: Sequence[str] | None = None) -> pa.RecordBatch:
         number = int(shard.shard.rpartition("-")[2])
         part = self.labels(shard.split, columns).slice(number * ROWS, shard.rows)

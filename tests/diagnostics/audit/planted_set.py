@@ -43,6 +43,9 @@ class PlantedSet(ListedRoles):
             for name in CHANNELS
         )
 
+    def row_groups(self) -> tuple[tuple[int, ...], ...]:
+        return ((self.table.num_rows,),)
+
     def labels(self, split: str | None = None, columns: Sequence[str] | None = None) -> pa.Table:
         return self.table if columns is None else self.table.select(list(columns))
 

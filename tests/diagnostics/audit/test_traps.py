@@ -107,6 +107,7 @@ def test_of_ten_traps_one_per_layer_each_is_found_and_named(clean: MeasuredSet, 
 
 def test_attackers_see_no_label_of_damage_and_nothing_that_follows_from_it(clean: MeasuredSet) -> None:
     raw = {"edges", "offsets", "lines", "samples", "ends", "clock", "codes", "course", "blocks", "phases"}
+    raw |= {"locked", "low_bits", "echoes"}
     assert set(condition_layers(clean)) == {"metadata", "texts", "order", "bytes", "noise", "channels"} | raw
     shown = [name for _, names in condition_layers(clean).values() for name in names]
     assert not {"record_id", "damaged_area_mm2", "snr_lid_x_db", "mesh_stiffness_loss"} & set(shown)

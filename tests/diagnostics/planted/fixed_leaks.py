@@ -1,4 +1,4 @@
-"""Leaks that stand at fixed times, frequencies or lags, far below what the gears give."""
+"""Leaks at fixed times, frequencies or lags, far below what the gears give, and one in how files are cut."""
 
 from __future__ import annotations
 
@@ -42,6 +42,7 @@ def faint_waveform(record: Signals) -> np.ndarray:
     return covered
 
 
-FIXED_LEAKS: dict[str, Leak] = dict(
-    named((locked_mains, late_echo, marked_low_bits, faint_waveform), "channels"),
-)
+FIXED_LEAKS: dict[str, Leak] = {
+    **named((locked_mains, late_echo, marked_low_bits, faint_waveform), "channels"),
+    "row_groups": Leak("row_groups", "Damaged records have row groups of their own in their file", is_grouped=True),
+}

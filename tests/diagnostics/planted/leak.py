@@ -62,6 +62,8 @@ class Leak:
         Whether healthy records pass `channels` too.
     labels
         (rows, which of them are damaged) -> other rows; passes data and labels alike.
+    is_grouped
+        Whether damaged rows that follow each other have a row group of their own in their file.
     """
 
     name: str
@@ -70,6 +72,7 @@ class Leak:
     tacho: Callable[[Signals], np.ndarray] | None = None
     is_for_all: bool = False
     labels: Callable[[pa.Table, np.ndarray], pa.Table] | None = None
+    is_grouped: bool = False
 
 
 def named(functions: tuple[Callable[..., object], ...], part: str, **more: object) -> Mapping[str, Leak]:

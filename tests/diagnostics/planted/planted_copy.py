@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from siggen.dataset.seal import sealed, unsealed
-from siggen.dataset.shard import packed
+from siggen.dataset.shard import packed, parquet_options
 from tests.dataset.resealed_set import reseal
 from tests.diagnostics.planted.leak import Leak, Signals
 
@@ -22,7 +23,10 @@ def planted_copy(source: Path, folder: Path, leak: Leak) -> Path:
     shutil.copytree(source, folder)
     names = channel_columns(folder)
     for file in sorted((folder / "data").glob("*.parquet")):
-        _rewrite(file, planted(pq.read_table(file), leak, names, _fs_hz(folder)))
+        rows = planted(pq.read_table(file), leak, names, _fs_hz(folder))
+        _rewrite(file, rows)
+        if leak.is_grouped:
+            _group(file, rows)
     file = folder / "labels.parquet"
     rows = pq.read_table(file)
     leaky = leak.labels(rows, damaged(rows)) if leak.labels else rows
@@ -110,6 +114,14 @@ def converter_step(samples: np.ndarray) -> float:
 def _rewrite(path: Path, rows: pa.Table) -> None:
     """Write rows in the place of those of a file, as siggen does."""
     path.write_bytes(packed(rows))
+
+
+def _group(path: Path, rows: pa.Table) -> None:
+    """Write rows with a row group for each run of damaged and of other rows."""
+    edges = [0, *(np.flatnonzero(np.diff(damaged(rows))) + 1).tolist(), rows.num_rows]
+    with pq.ParquetWriter(path, rows.schema, **parquet_options(rows.schema)) as writer:
+        for start, stop in pairwise(edges):
+            writer.write_table(rows.slice(start, stop - start).combine_chunks())
 
 
 def _list_columns(folder: Path) -> None:

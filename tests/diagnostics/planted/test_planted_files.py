@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import siggen
+from diagnostics.audit.measured_set import group_shares
 from tests.command import command
 from tests.dataset.fake_set import STEP_M_S2, file_bytes, write_fake_set
 from tests.diagnostics.planted.fixed_leaks import FIXED_LEAKS
@@ -23,7 +24,7 @@ from tests.diagnostics.planted.signal_leaks import SIGNAL_LEAKS
 IN_SIGNALS = [
     *SIGNAL_LEAKS.values(),
     *(leak for leak in FURTHER_LEAKS.values() if not leak.labels),
-    *FIXED_LEAKS.values(),
+    *(leak for leak in FIXED_LEAKS.values() if not leak.is_grouped),
 ]
 IN_LABELS = [*LABEL_LEAKS.values(), *(leak for leak in FURTHER_LEAKS.values() if leak.labels)]
 
@@ -56,6 +57,15 @@ def test_a_planted_set_verifies_and_differs_by_the_leak_alone(
     assert verified.returncode == 0, verified
     assert len(siggen.open(copy).labels()) == 30
     assert changed_columns(source, copy) == changed
+
+
+def test_row_groups_of_damaged_records_are_seen_and_one_group_is_nothing(source: Path, tmp_path: Path) -> None:
+    copy = planted_copy(source, tmp_path / "copy", FIXED_LEAKS["row_groups"])
+    assert changed_columns(source, copy) == set()
+    assert group_shares(siggen.open(source).row_groups()) == {}
+    (shares,) = group_shares(siggen.open(copy).row_groups()).values()
+    assert shares.size == len(siggen.open(copy).labels())
+    assert shares.max() < 1.0
 
 
 def test_labels_keep_the_order_of_the_signals(source: Path, tmp_path: Path) -> None:
