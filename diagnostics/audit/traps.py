@@ -33,10 +33,12 @@ from typing import Any
 import numpy as np
 
 from diagnostics.audit.bank import ChanceLimit, gearboxes_needed
-from diagnostics.audit.condition_traps import condition_traps
+from diagnostics.audit.condition_layers import CHANNELS, LAGS, NOISE
+from diagnostics.audit.condition_traps import LEVELS, condition_traps
 from diagnostics.audit.detectability import FEWEST_SPECIMENS
 from diagnostics.audit.finding import LARGEST_AUC, MEND, MENDS, Finding, must_not_tell
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
+from diagnostics.audit.raw_records import EDGES, ENDS, TEMPLATES
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.page.wording import counted, decimal
 from diagnostics.statistics.evaluation import bootstrap_weights, interval, weighted_auc
@@ -639,12 +641,21 @@ def shared_by_channels(measured: MeasuredSet) -> Iterator[Finding]:
     )
 
 
-def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
-    """Return every finding, in the order of the traps.
+MOVED_BY_MANY = frozenset(
+    {
+        "noise_shared_by_records",
+        *(f"state_told_by_{layer}" for layer in (NOISE, CHANNELS, ENDS, EDGES, LAGS, LEVELS, TEMPLATES)),
+    }
+)
+"""Traps that clocks, clipping, lost samples or a drift spring too: what names one cause speaks before them."""
 
-    One finding hides no other: attackers on conditions, which name no cause, speak last.
+
+def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
+    """Return every finding, in the order of the traps; those that many causes have come last.
+
+    One finding hides no other: attackers on conditions, which name no cause, speak behind the others.
     """
-    return [
+    found = [
         *shared_specimens(measured),
         *healthy_sidebands(measured),
         *simple_thresholds(measured, seed),
@@ -655,6 +666,7 @@ def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]
         *damage_phase(measured),
         *condition_traps(measured, seed),
     ]
+    return sorted(found, key=lambda finding: finding.trap in MOVED_BY_MANY)
 
 
 def verdict(findings: Sequence[Finding], specimens: int, chance: ChanceLimit | None = None, missing: str = "") -> str:

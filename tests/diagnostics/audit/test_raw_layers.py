@@ -72,6 +72,8 @@ def test_leaks_in_signals_and_texts_are_all_named_and_none_hides_another(clean: 
     found = {finding.trap: finding for finding in separability_findings(measured_set(leaking(clean)))}
     for layer in ("channels", "lines", "edges", "offsets", "lags", "texts", "levels"):
         assert f"state_told_by_{layer}" in found
+    names = list(found)
+    assert names.index("state_told_by_texts") < names.index("state_told_by_channels"), "many causes move noise"
     assert f"of {CHANNELS[2]} at 0.49" in found["state_told_by_lines"].measured
     assert "first" in found["state_told_by_edges"].measured
 
