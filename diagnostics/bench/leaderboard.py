@@ -641,9 +641,8 @@ def entry_log(file: Path, digest: str, entries: Sequence[BoardEntry]) -> list[di
     DatasetError
         If a line is not the one that was written.
     """
-    kept = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {LOG: []}
     found, chain = [], digest
-    for number, line in enumerate(kept[LOG]):
+    for number, line in enumerate(_kept_log(file)):
         chain = _chained(chain, line)
         if line.get(CHAIN) != chain:
             raise DatasetError(
@@ -658,6 +657,23 @@ def entry_log(file: Path, digest: str, entries: Sequence[BoardEntry]) -> list[di
             chain = _chained(chain, line)
             found.append({**line, CHAIN: chain})
     return found
+
+
+def _kept_log(file: Path) -> list[dict[str, Any]]:
+    """Return the lines of the log of a board's file; of a missing file or one without a log none."""
+    if not file.is_file():
+        return []
+    try:
+        kept = json.loads(file.read_text(encoding="utf-8"))
+        lines = kept.get(LOG, [])
+        if not isinstance(lines, list) or not all(isinstance(line, dict) for line in lines):
+            raise TypeError("its log is no list of objects")
+    except (ValueError, TypeError, AttributeError) as error:
+        raise DatasetError(
+            f"{file}: is no file of a board ({error}); lay the right one back, or name a new folder with out, where "
+            "counting begins anew"
+        ) from error
+    return lines
 
 
 def _chained(before: str, line: Mapping[str, Any]) -> str:

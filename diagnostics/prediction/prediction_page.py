@@ -129,7 +129,8 @@ def prediction_headline(found: Prediction) -> str:
         return "; ".join([*told, f"no {found.class_kind} is named: {found.reasons[0]}"])
     share = percent(float(found.votes[0].probability.max()))
     weak = ", a weak answer" if found.contradiction else ""
-    return "; ".join([*told, f"most like {found.state} ({share}{weak})"])
+    kind = "" if found.class_kind == STATE else f"the {found.class_kind} "
+    return "; ".join([*told, f"most like {kind}{found.state} ({share}{weak})"])
 
 
 def prediction_rows(found: Prediction) -> list[tuple[str, str]]:

@@ -12,12 +12,14 @@ from dataclasses import dataclass
 from io import BytesIO
 from math import cos, inf, pi
 from pathlib import Path
+from pickle import UnpicklingError
 from typing import Any
 
 import torch
 from torch import nn
 from torch.optim.adamw import adamw
 
+from siggen.errors import UsageError
 from siggen.file_writing import write_file
 
 
@@ -79,8 +81,13 @@ def fit_network(
     step = _AdamW(list(network.parameters()), loop)
     kept, best, lowest, losses, passed = _weights(network), 0, inf, list[float](), -1
     if place is not None and place.exists():
-        held = torch.load(place, weights_only=True)  # plain tensors and numbers: nothing is executed
-        network.load_state_dict(held["weights"])
+        try:
+            held = torch.load(place, weights_only=True)  # plain tensors and numbers: nothing is executed
+            network.load_state_dict(held["weights"])
+        except (OSError, RuntimeError, ValueError, KeyError, TypeError, EOFError, UnpicklingError) as error:
+            raise UsageError(
+                f"{place}: holds no place of this training; delete it to begin the passes again"
+            ) from error
         step.load(held["steps"])
         torch.set_rng_state(held["generator"])
         kept, best, lowest, losses, passed = (held[name] for name in ("kept", "best", "lowest", "losses", "passed"))

@@ -7,8 +7,9 @@ thousands of gearboxes then fit in memory, and every pass mixes all of them. The
 weights depend on families, numbers and seed alone, not on the minutes of a call, on interruptions or on the number of
 cores.
 
-What it is judged on are pairs of gears that no record it has learnt from had: the split `test` of the families. The
-split `validation` widens intervals of the size.
+What it is judged on are pairs of gears that no record it has learnt from had, whatever family: a pair's teeth decide
+its split. The split `validation` widens intervals of the size. Families of fewer than FEWEST_PAIRS pairs in all keep
+the splits of their gearboxes, and scores are of unseen gearboxes.
 """
 
 from __future__ import annotations
@@ -21,8 +22,10 @@ from contextlib import closing
 from dataclasses import asdict, dataclass
 from functools import partial
 from io import BytesIO
+from math import ceil
 from pathlib import Path
 from typing import Any, TypeAlias
+from zipfile import BadZipFile
 
 import numpy as np
 import torch
@@ -46,7 +49,7 @@ from diagnostics.training.gearbox_network import (
 from diagnostics.training.loop import LoopSettings, fit_network, seeded
 from diagnostics.training.referenced import healthy_references
 from diagnostics.training.splits import TEST, TRAIN, VALIDATION
-from siggen.errors import UsageError
+from siggen.errors import UsageError, counted
 from siggen.file_writing import write_file
 from siggen.plain_json import json_text, plain
 
@@ -58,6 +61,8 @@ LABELS = (
 )  # fmt: skip
 GEARS = ("pinion", "gear")
 TEETH = tuple(f"teeth_{gear}" for gear in GEARS)
+FEWEST_PAIRS, SHARES = 20, {TEST: 0.15, VALIDATION: 0.1}
+"""Pairs of teeth from which on these decide the split, and the shares that are not learnt from."""
 ACCELERATION = "acceleration"
 Say: TypeAlias = Callable[[str], object]
 """Takes a line on how far it is."""
@@ -108,6 +113,18 @@ class PretrainingSettings:
     alone: float = 0.5
     seed: int = 0
 
+    def __post_init__(self) -> None:
+        if isinstance(self.families, str) or not self.families:
+            raise UsageError(f"families: received {self.families!r}; allowed: names of configurations, one or more")
+        wholes = {name: getattr(self, name) for name in ("gearboxes", "mixed", "passes")}
+        wholes |= {f"widths[{place}]": width for place, width in enumerate(self.widths or (0,))}
+        for name, value, least in (*((*one, 1) for one in wholes.items()), ("batch", self.batch, 2)):
+            if isinstance(value, bool) or not isinstance(value, int) or value < least:
+                raise UsageError(f"{name}: received {value!r}; allowed: whole numbers from {least} on")
+        for name, value, most in (("rate", self.rate, 1.0), ("decay", self.decay, 10.0), ("alone", self.alone, 1.0)):
+            if not 0.0 <= value <= most:
+                raise UsageError(f"{name}: received {value!r}; allowed: 0 to {most:g}")
+
 
 @dataclass(frozen=True, slots=True)
 class KeptRecords:
@@ -117,7 +134,7 @@ class KeptRecords:
     ----------
     averages : GearLines
     labels : mapping of str to (records,)
-        As a record has them; `record_id` and `specimen_id` count over all families.
+        As a record has them; `record_id` and `specimen_id` count over all families. `pair` counts pairs of teeth.
     """
 
     averages: GearLines
@@ -149,7 +166,8 @@ def pretrain(
     settings : PretrainingSettings, optional
         Default: two thousand gearboxes of the shipped families, 75 minutes on two cores.
     minutes : float, optional
-        After which the call ends at the next place from which it can go on; by default when all is done.
+        After which the call ends, by default when all is done. Of gearboxes those that are simulated then are kept; a
+        pass that has begun is begun again by the next call.
     workers : int, optional
         Processes that simulate, by default one per core; 0: this process.
     say : callable, optional
@@ -163,7 +181,8 @@ def pretrain(
     Raises
     ------
     UsageError
-        If the folder holds another training, or a family is one of several stages or of planets.
+        If a setting is out of its range, the folder holds another training or a damaged file, or a family has several
+        stages, planets, no accelerometer, or another number of them than the first.
     """
     chosen, home = settings or PretrainingSettings(), Path(folder)
     end = None if minutes is None else time.monotonic() + 60.0 * minutes
@@ -193,7 +212,9 @@ def _averages(
     blocks = -(-chosen.gearboxes // (len(designs) * chosen.mixed))
     by = {"executor": "serial"} if workers == 0 else {"workers": workers}
     streams = [partial(siggen.stream, design, mixed=chosen.mixed, seed=chosen.seed, **by) for design in designs]
-    _keep_plan(home, chosen, [stream(first_gearbox=0).state_dict() for stream in streams])
+    whole = [stream(first_gearbox=0) for stream in streams]
+    _check_families(whole)
+    _keep_plan(home, chosen, [stream.state_dict() for stream in whole])
     for family, begun in enumerate(streams):
         done = next((number for number in range(blocks) if not _block(home, family, number).exists()), blocks)
         if done == blocks:
@@ -206,6 +227,18 @@ def _averages(
                 say(f"family {family + 1} of {len(designs)}: {(number + 1) * chosen.mixed} gearboxes")
                 check()
     return _read(home, len(designs), blocks)
+
+
+def _check_families(streams: Sequence[Any]) -> None:
+    counts = [sum(one.quantity == ACCELERATION for one in stream.channels) for stream in streams]
+    for stream, count in zip(streams, counts, strict=True):
+        meshes = len(stream.design.names.meshes)
+        if meshes != 1 or not count or count != counts[0]:
+            raise UsageError(
+                f"families: received {stream.design.name} with {counted(meshes, 'mesh', 'meshes')} and "
+                f"{counted(count, 'channel')} of acceleration; allowed: one pair of gears, and as many such channels "
+                f"as the first family has ({counts[0]})"
+            )
 
 
 def _block(home: Path, family: int, number: int) -> Path:
@@ -238,11 +271,8 @@ def _write_block(path: Path, records: Sequence[Mapping[str, Any] | None], stream
 
 def _of_record(record: Mapping[str, Any], stream: Any) -> tuple[np.ndarray, np.ndarray]:
     columns = {one.name: record[one.column] for one in stream.channels if one.quantity == ACCELERATION}
-    if not columns or not set(TEETH) <= record.keys():
-        raise UsageError(
-            "families: received one without acceleration, or of other gears than a pinion and a gear; allowed: pairs "
-            "with accelerometers"
-        )
+    if not set(TEETH) <= record.keys():
+        raise UsageError(f"families: received other gears than {' and '.join(GEARS)}; allowed: one pair of them")
     return gear_lines(columns, record["tacho_s"], stream.design.fs_hz, tuple(record[name] for name in TEETH))
 
 
@@ -250,13 +280,32 @@ def _read(home: Path, families: int, blocks: int) -> KeptRecords:
     parts: list[dict[str, np.ndarray]] = []
     for family in range(families):
         for number in range(blocks):
-            with np.load(_block(home, family, number), allow_pickle=False) as file:
-                part = {name: file[name] for name in file.files}
+            path = _block(home, family, number)
+            try:
+                with np.load(path, allow_pickle=False) as file:
+                    part = {name: file[name] for name in file.files}
+            except (OSError, ValueError, EOFError, BadZipFile) as error:
+                raise UsageError(
+                    f"{path}: cannot be read ({error}); delete it, and the same call makes it again"
+                ) from error
             for name in ("record_id", "specimen_id"):
                 part[name] = part[name] * families + family  # numbers of their own
             parts.append(part)
     joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    pairs, joined["pair"] = np.unique(joined["teeth"], axis=0, return_inverse=True)
+    if len(pairs) >= FEWEST_PAIRS:
+        joined["split"] = pair_splits(pairs)[joined["pair"]]
     return KeptRecords(GearLines(joined.pop("lines"), joined.pop("teeth")), joined)
+
+
+def pair_splits(pairs: np.ndarray) -> np.ndarray:
+    """Return the split of each pair of teeth (pairs, 2): dealt in the order of their digests, by no seed."""
+    found, first = np.full(len(pairs), TRAIN, dtype=object), 0
+    order = np.argsort([hashlib.sha256("/".join(map(str, pair)).encode()).hexdigest() for pair in pairs.tolist()])
+    for name, share in SHARES.items():
+        count = ceil(share * len(pairs))
+        found[order[first : first + count]], first = name, first + count
+    return found.astype(str)
 
 
 def _rows(kept: KeptRecords) -> np.ndarray:
@@ -337,18 +386,24 @@ def _finished(
             "parameters": sum(weight.numel() for weight in network.parameters()),
             "torch": torch.__version__,
             **plan,
-            "learnt_from": {
+            "gearboxes_of_splits": {
                 name: {"gearboxes": int(np.unique(owner[split == name]).size), "records": int((split == name).sum())}
                 for name in (TRAIN, VALIDATION, TEST)
             },
             "kinds": network.kinds,
-            "scores_of_unseen_pairs": scores,
+            f"scores_of_unseen_{_unseen(kept)}": scores,
             "use": USE,
             "no_use": NO_USE,
         }
     )
     write_file(home / CARD, json_text(card))
     return card
+
+
+def _unseen(kept: KeptRecords) -> str:
+    """Return what no record learnt from shares with those judged on."""
+    learnt = set(kept.labels["pair"][kept.of_split(TRAIN)].tolist())
+    return "gearboxes" if learnt & set(kept.labels["pair"][kept.of_split(TEST)].tolist()) else "pairs"
 
 
 def _alone(rows: np.ndarray) -> np.ndarray:
@@ -367,9 +422,11 @@ def _widen(network: GearboxNetwork, rows: np.ndarray, truths: DamageTruth, place
     if not places.size:
         return
     missed = []
-    for seen in (_alone(rows[places]), rows[places][_has_healthy(rows[places])]):
-        known = truths.size[places] if len(seen) == places.size else truths.size[places][_has_healthy(rows[places])]
-        low, _, high = tell(network, seen).size.numpy().T
+    beside = places[_has_healthy(rows[places])]
+    for chosen, seen in ((places, _alone(rows[places])), (beside, rows[beside])):
+        if not chosen.size:
+            continue
+        known, (low, _, high) = truths.size[chosen], tell(network, seen).size.numpy().T
         missed.append(np.maximum(low - known, known - high))
     found = np.sort(np.concatenate(missed))
     rank = int(np.ceil((found.size + 1) * (QUANTILES[-1] - QUANTILES[0]))) - 1
@@ -381,15 +438,21 @@ def _scores(network: GearboxNetwork, kept: KeptRecords, rows: np.ndarray, truths
     places = kept.of_split(TEST)
     beside = places[_has_healthy(rows[places])]
     return {
-        name: _scores_of(tell(network, seen), truths.chosen(chosen), {k: v[chosen] for k, v in kept.labels.items()})
+        name: _scores_of(
+            tell(network, seen),
+            truths.chosen(chosen),
+            {k: v[chosen] for k, v in kept.labels.items()},
+            "specimen_id" if _unseen(kept) == "gearboxes" else "pair",
+        )
         for name, chosen, seen in (("alone", places, _alone(rows[places])), ("beside", beside, rows[beside]))
         if chosen.size
     }
 
 
-def _scores_of(told: Told, truths: DamageTruth, labels: Mapping[str, np.ndarray]) -> dict[str, Any]:
+def _scores_of(told: Told, truths: DamageTruth, labels: Mapping[str, np.ndarray], drawn: str) -> dict[str, Any]:
+    """Return scores with limits; `drawn` names what is resampled, since that is what others would draw anew."""
     damage, specimen = told.damage.double().numpy(), labels["specimen_id"]
-    weights = bootstrap_weights(specimen, 0)
+    weights = bootstrap_weights(labels[drawn], 0)
     ill, found = truths.damaged > 0.0, dict[str, Any]()
     for name in ("damage", *dict.fromkeys(labels["state"][ill].tolist())):
         asked = ~ill | (ill if name == "damage" else labels["state"] == name)

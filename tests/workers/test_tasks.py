@@ -114,8 +114,8 @@ def test_a_task_that_kills_every_worker_is_among_those_that_are_named() -> None:
         dict(results(workers_of(None, 2), tasks.die_at_three, range(6)))
 
 
-def test_workers_that_die_at_their_start_end_with_a_hint_at_the_main_guard() -> None:
-    with pytest.raises(EngineError, match=r'workers died 3 times.*__name__ == "__main__"'):
+def test_workers_that_die_at_their_start_end_with_how_to_go_on() -> None:
+    with pytest.raises(EngineError, match=r"workers died 3 times.*with workers=0, in this process"):
         dict(results(workers_of(None, 1), tasks.DiesOnArrival(), range(3)))
 
 

@@ -114,7 +114,7 @@ def test_predict_names_a_fault_and_says_so(
     assert "state" not in found
     assert found["model"]["classes_are"] == "fault"
     assert {"healthy", "pitting"} < set(found["probabilities"]["indicators"])
-    assert "most like the fault pitting" in (tmp_path / "out/prediction.html").read_text(encoding="utf-8")
+    assert "Most like the fault pitting" in (tmp_path / "out/prediction.html").read_text(encoding="utf-8")
 
 
 def test_the_explorer_takes_faults_from_the_model(kinds: Any, measured_kinds: RecordTable, model: Path) -> None:

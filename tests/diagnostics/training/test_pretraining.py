@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import torch
 
 import diagnostics
+import siggen
 from diagnostics.statistics.evaluation import weighted_auc
 from diagnostics.training.gear_rows import ALONE, ROWS, STEPS
 from diagnostics.training.gearbox_network import (
@@ -23,7 +25,7 @@ from diagnostics.training.gearbox_network import (
     told_loss,
 )
 from diagnostics.training.loop import LoopSettings, fit_network, seeded
-from diagnostics.training.pretraining import CARD, WEIGHTS, PretrainingSettings
+from diagnostics.training.pretraining import CARD, FAMILIES, WEIGHTS, PretrainingSettings, pair_splits
 from siggen.errors import UsageError
 
 KINDS = ("crack", "spalling")
@@ -140,3 +142,35 @@ def test_a_training_that_was_stopped_twice_ends_with_the_same_bytes(tmp_path: Pa
     assert (tmp_path / "whole" / WEIGHTS).read_bytes() == (tmp_path / "stopped" / WEIGHTS).read_bytes()
     with pytest.raises(UsageError, match="holds a training with other passes, seed; allowed: another folder"):
         diagnostics.pretrain(tmp_path / "whole", PretrainingSettings((str(family),), 3, 1, 5, 8, widths=(4, 4), seed=1))
+
+
+def test_no_pair_of_teeth_is_learnt_from_in_one_family_and_judged_in_another_nor_in_the_preset_of_unseen_gears() -> (
+    None
+):
+    drawn = [{pair.teeth for pair in siggen.load_config(name).config.gears.pairs} for name in (*FAMILIES, "families")]
+    pairs = np.array(sorted(drawn[0] | drawn[1]))
+    splits = pair_splits(pairs)
+    assert {name: round((splits == name).mean(), 2) for name in ("train", "validation", "test")} == {
+        "train": 0.72, "validation": 0.11, "test": 0.17,
+    }  # fmt: skip
+    moved = np.random.default_rng(0).permutation(len(pairs))
+    assert (pair_splits(pairs[moved]) == splits[moved]).all()
+    assert not drawn[2] & (drawn[0] | drawn[1])
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"gearboxes": 0}, "gearboxes: received 0; allowed: whole numbers from 1 on"),
+        ({"batch": 1}, "batch: received 1; allowed: whole numbers from 2 on"),
+        ({"rate": float("nan")}, "rate: received nan; allowed: 0 to 1"),
+        ({"families": "quickstart"}, "families: received 'quickstart'; allowed: names of configurations"),
+        ({"families": ("two_stage",)}, "families: received two_stage with 2 meshes .* allowed: one pair of gears"),
+    ],
+)
+def test_wrong_settings_are_refused_before_anything_is_simulated(
+    wrong: dict[str, Any], said: str, tmp_path: Path
+) -> None:
+    with pytest.raises(UsageError, match=said):
+        diagnostics.pretrain(tmp_path / "out", PretrainingSettings(**wrong), workers=0)
+    assert not (tmp_path / "out").exists()
