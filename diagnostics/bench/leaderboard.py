@@ -41,7 +41,15 @@ from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.process_pool import process_pool
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.base.single_thread import single_thread
-from diagnostics.bench.question import LIFE_CONDITIONS, LIFE_QUESTION, Question, is_alone, parts_of, question_of
+from diagnostics.bench.question import (
+    LIFE_CONDITIONS,
+    LIFE_QUESTION,
+    TEMPLATES,
+    Question,
+    is_alone,
+    parts_of,
+    question_of,
+)
 from diagnostics.indicators.classifier_table import check_table, classifier_table, feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.table import record_table
@@ -58,10 +66,11 @@ from diagnostics.page.blocks import (
     TableBlock,
     summary_blocks,
 )
+from diagnostics.page.sentences import Sentences
 from diagnostics.page.style import png_bytes
 from diagnostics.page.tables import cell
 from diagnostics.page.template import write_page
-from diagnostics.page.wording import capitalised, decimal, minus
+from diagnostics.page.wording import capitalised
 from diagnostics.records.state_classes import HEALTHY, SHAM
 from diagnostics.scoring.benchmark import BASELINES, Benchmark, labels_of, open_benchmark
 from diagnostics.scoring.benchmark_scores import JudgedPart, judged_parts, part_columns
@@ -76,7 +85,7 @@ from diagnostics.training.feature_classifier import DEFAULT_STRENGTH
 from diagnostics.training.lives import Inspections, blind_inspections, inspections_of, predictors
 from diagnostics.training.referenced import log_values
 from diagnostics.training.splits import SpecimenSplit
-from siggen.errors import DatasetError, UsageError, counted
+from siggen.errors import DatasetError, UsageError
 from siggen.file_writing import write_file
 from siggen.plain_json import json_text
 
@@ -450,6 +459,7 @@ MEAN = "mean"
 BLIND_ANSWERS, LEVEL = 200, 0.95
 """Answers without knowledge whose scatter is taken, known to 5 %, and the level of the limit of the best."""
 SUFFIXES = (".parquet", ".csv")
+BOARD_WORDS = Sentences(TEMPLATES / "board.txt", mean=MEAN)
 
 
 @dataclass(frozen=True, slots=True)
@@ -713,7 +723,7 @@ def write_board(
     }
     write_file(folder / NUMBERS, json_text(facts))
     title = f"Leaderboard of {benchmark.title}, {benchmark.tier}"
-    parts: list[Block] = [Heading(title, 1), *summary_blocks(_sentences(benchmark, tables, spread, log))]
+    parts: list[Block] = [Heading(title, 1), *summary_blocks(_sentences(benchmark, tables, limits, log))]
     for referenced, ordered in tables.items():
         if ordered:
             parts += [
@@ -740,63 +750,30 @@ def _goodness(entry: BoardEntry) -> float:
 def _sentences(
     benchmark: Benchmark,
     tables: Mapping[bool, list[BoardEntry]],
-    spread: Mapping[bool, float],
+    limits: Mapping[str, Mapping[str, Any]],
     log: Sequence[Mapping[str, Any]],
 ) -> list[str]:
-    entries, question = (
-        [entry for ordered in tables.values() for entry in ordered],
-        question_of(benchmark.learn().config),
-    )
-    return [
-        *(_lead(question.tracks[referenced], ordered) for referenced, ordered in tables.items() if ordered),
+    question = question_of(benchmark.learn().config)
+    sham = [(entry, part) for ordered in tables.values() for entry in ordered for part in entry.leak]
+    outside = [(entry, part) for entry, part in sham if not _holds_chance(entry, part)]
+    sentences = [
+        *(_lead(question.tracks[side], ordered) for side, ordered in tables.items() if ordered),
         *(
-            _count_sentence(question.tracks[side], sum(line[SIDE] == side for line in log), spread[side])
-            for side, own in tables.items()
-            if own and spread[side] > 0.0
+            BOARD_WORDS.by_chance(track, counted["entries"], counted["best_by_chance"])
+            for track, counted in limits.items()
         ),
-        *([_leak_sentence(entries)] if question.leak else []),
-        f"Scores are {question.scores_are}, with 95 % limits over gearboxes. Digest {benchmark.digest}, simulation "
-        f"version {benchmark.simulation_version}: only scores with the same two are comparable.",
-        *(
-            f"{counted(len(log), 'entry', 'entries')} judged in this folder so far. Its log ends with "
-            f"{line[CHAIN][:16]}: a later board whose log does not hold that was begun anew."
-            for line in log[-1:]
-        ),
+        BOARD_WORDS.sham(len(sham), outside) if question.leak else "",
+        BOARD_WORDS.scores(question, benchmark),
+        BOARD_WORDS.judged(log),
     ]
-
-
-def _count_sentence(track: str, entries: int, spread: float) -> str:
-    """Say what the best of all entries of a track reaches without knowledge."""
-    return (
-        f"{track}: {counted(entries, 'entry', 'entries')} counted, baselines among them. The best of so many without "
-        f"knowledge exceeds a mean AUC of {decimal(best_by_chance(entries, spread))} in 5 % of the cases; a mean below "
-        "shows nothing."
-    )
-
-
-def _leak_sentence(entries: Sequence[BoardEntry]) -> str:
-    sham = [(part, entry) for entry in entries for part in entry.leak]
-    outside = [f"{entry.name} on {part}" for part, entry in sham if not _holds_chance(entry, part)]
-    told = f" Outside: {', '.join(outside[:5])}." if outside else ""
-    return (
-        f"A sham is damage without effect. In {len(sham) - len(outside)} of {len(sham)} cases the limits of its AUC "
-        f"hold 0.5; about one in 20 is outside by chance.{told}"
-    )
+    return [sentence for sentence in sentences if sentence]
 
 
 def _lead(track: str, ordered: Sequence[BoardEntry]) -> str:
     """Return who leads, and whether the gearboxes tell the second from it."""
-    first, score = ordered[0], ordered[0].score(MEAN)
-    measure = first.question.measure
-    limits = f"{score.value:.2f} ({score.low:.2f} to {score.high:.2f})"
-    said = f"{track}: {first.name} leads with a mean {first.question.score_name} of {limits}"
-    if len(ordered) < 2 or len(ordered[1].every) < len(first.every):
-        return f"{said}."
-    behind = paired(first, ordered[1], MEAN)
-    is_worse = behind.low > 0.0 if measure.falls else behind.high < 0.0
-    telling = "" if is_worse else "; these gearboxes cannot tell the two apart"
-    apart = minus(f"{behind.value:+.2f} ({behind.low:+.2f} to {behind.high:+.2f})")
-    return f"{said}, {ordered[1].name} follows with {apart}{telling}."
+    first, *others = ordered
+    second = next((entry for entry in others[:1] if len(entry.every) == len(first.every)), None)
+    return BOARD_WORDS.lead(track, first, second, paired(first, second, MEAN) if second else None)
 
 
 def _holds_chance(entry: BoardEntry, part: str) -> bool:

@@ -26,10 +26,12 @@ import pyarrow as pa
 
 import siggen
 from diagnostics.base.beside import beside
+from diagnostics.base.extras import require_packages
 from diagnostics.bench.question import (
     ALONE,
     CONDITIONS,
     LIFE_QUESTION,
+    TEMPLATES,
     PublishedRecords,
     Question,
     derived,
@@ -37,6 +39,7 @@ from diagnostics.bench.question import (
     question_of,
     shuffled,
 )
+from diagnostics.page.sentences import filled
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.scoring.benchmark import (
     COMMITMENT,
@@ -305,65 +308,22 @@ def _columns(rows: list[dict[str, Any]]) -> dict[str, list[Any]]:
 
 
 CLOSING, LICENCE = "## Licence, authors, citation\n", "license: "
+"""What the part to learn from says where it is ready to be published."""
 
 
-def benchmark_card(facts: Mapping[str, Any], learn: Any, card: str, question: Question) -> str:
+def benchmark_card(facts: Mapping[str, Any], design: Any, card: str, question: Question) -> str:
     """Return the card of the whole benchmark; licence, authors and citation are those of the card to learn from."""
-    _, closing, said = card.partition(CLOSING)
-    licence = next((line for line in card.splitlines() if line.startswith(LICENCE)), "")
-    rows = "\n".join(f"| `{TESTS}/{name}` | {facts['records'][name]} |" for name in facts["parts"])
-    return f"""{_front_matter(facts, licence, question.train)}# {facts["title"]}, {facts["tier"]}
-
-{question.subject} in simulated vibration records of {learn.duration_s:g} s at {learn.fs_hz:g} Hz. **The data are
-synthetic**: they were computed by siggen, simulation version {facts["simulation_version"]}, not measured. Labels of the
-test parts are sealed until their maker reveals them.
-
-| part | records |
-|---|---|
-| `{LEARN}`, with labels | {facts["records"][LEARN]} |
-{rows}
-
-## Rules
-
-{question.rules}
-
-## Scores
-
-Digest: `{facts["digest"]}`. It is part of every score; a score of another digest is another benchmark's.
-
-    siggen-diagnostics score . mine.parquet   # its maker; others once `revealed.json` is here
-    sha256sum revealed.json                   # is what `commitment.json` says
-
-`commitment.json` holds the SHA-256 of labels, salt, seeds and configurations, published before the first score.
-`revealed.json` is that file. `siggen.generate` makes the test parts again from its configurations.
-{closing}{said}"""
-
-
-def _front_matter(facts: Mapping[str, Any], licence: str, train: str) -> str:
-    """Return what Hugging Face reads: every part as a configuration of its own."""
-    learn = "\n".join(_files(split, f"{LEARN}/data/{split}-*.parquet") for split in ("train", "validation", "test"))
-    tests = "\n".join(
-        f"- config_name: {name}\n  data_files:\n"
-        + _files("test", f"{TESTS}/{name}/data/test-*.parquet")
-        + ("" if is_alone(name) else "\n" + _files(train, f"{TESTS}/{name}/data/train-*.parquet"))
-        for name in facts["parts"]
+    return filled(
+        TEMPLATES / "benchmark_card.md",
+        facts=facts,
+        design=design,
+        question=question,
+        learn=LEARN,
+        tests=TESTS,
+        is_alone=is_alone,
+        licence=next((line for line in card.splitlines() if line.startswith(LICENCE)), ""),
+        closing="".join(card.partition(CLOSING)[1:]),
     )
-    said = f"{licence}\n" if licence else ""
-    return f"""---
-pretty_name: {facts["title"]}, {facts["tier"]}
-{said}tags: [synthetic, vibration, gearbox, condition-monitoring, benchmark]
-configs:
-- config_name: {LEARN}
-  default: true
-  data_files:
-{learn}
-{tests}
----
-"""
-
-
-def _files(split: str, path: str) -> str:
-    return f"  - split: {split}\n    path: {path}"
 
 
 def commit_benchmark(folder: str | Path, labels: str | Path | None = None) -> str:
@@ -509,12 +469,13 @@ def write_benchmark(
     Raises
     ------
     UsageError
-        If one folder lies in the other.
+        If one folder lies in the other, or Jinja2 is missing.
     ConfigError, DatasetError
         As of `siggen.generate`.
     """
     if out.resolve().is_relative_to(hidden.resolve()) or hidden.resolve().is_relative_to(out.resolve()):
         raise UsageError(f"{hidden}: what is secret may not lie in {out}, nor that in it; name another folder")
+    require_packages("the card of a benchmark", "jinja2")
     secret = derived(secret, tier, learn.identity)  # what one benchmark reveals tells nothing of another
     question = question_of(learn.canonical())
     conditions = question.parts(conditions or question.conditions)
@@ -629,7 +590,8 @@ def _write_blind(
     shutil.rmtree(folder, ignore_errors=True)  # what a call that was stopped had half written
     learn, own = configs
     facts = {"benchmark": question.title, "part": folder.name}
-    card = question.part_card(question.title, folder.name, rows)
+    template = TEMPLATES / f"{question.words}_part.md"
+    card = filled(template, title=question.title, part=folder.name, rows=rows, is_alone=is_alone)
     siggen.write_recorded_set(learn, folder, rows, condition_fields(part.labels), facts, card, measured=own, life=life)
 
 

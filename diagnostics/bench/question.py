@@ -19,6 +19,7 @@ import hashlib
 import hmac
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from diagnostics.records.state_classes import HEALTHY, SHAM
@@ -26,7 +27,8 @@ from diagnostics.scoring import detect, remaining_life
 from diagnostics.scoring.detect import DETECT
 from diagnostics.scoring.remaining_life import REMAINING_LIFE
 from diagnostics.scoring.task import Measure, Task
-from siggen.errors import counted
+
+TEMPLATES = Path(__file__).with_name("templates")
 
 Conditions = Mapping[str, Mapping[str, Any]]
 """Name -> top-level keys of the configuration to learn from that differ."""
@@ -133,10 +135,10 @@ class Question:
         Name of a condition -> what differs from the configuration to learn from.
     parts : callable
         Conditions; returns the same by test part.
-    subject, rules, train : str
+    subject, train : str
         What cards say, and what the split train of a test part is called there.
-    part_card : callable
-        Title, name of a test part and its rows; returns its card.
+    words : str
+        How the names of the templates of rules and of a test part's card begin.
     shown : callable
         Rows of the records of a part, secret, name of the part; returns what is published.
     task : Task
@@ -157,9 +159,8 @@ class Question:
     conditions: Conditions
     parts: Callable[[Conditions], Conditions]
     subject: str
-    rules: str
     train: str
-    part_card: Callable[[str, str, Sequence[Mapping[str, Any]]], str]
+    words: str
     shown: Callable[[list[dict[str, Any]], bytes, str], PublishedRecords]
     task: Task
     records: str
@@ -173,31 +174,6 @@ class Question:
     def measure(self) -> Measure:
         """The measure that ranks."""
         return self.task.measures[0]
-
-
-DAMAGE_RULES = """* One number for each record of the split `test`: `damage`, which rises with damage. Columns of other
-  tasks may stand beside it.
-* **Alone**, on the parts that end with `_alone`: a gearbox has one record there, which is judged by itself.
-* **Beside**, on the others: the gearbox's record of the split `train`, which is healthy, may be used too; the
-  predictions have a column `reference` that is true. Other records of the part may not be used.
-* Learn and choose on `learn` alone. Nothing is learned from test parts."""
-
-
-_TOLD = "The split `train` has one healthy record of each gearbox ({}), told as a reference"
-
-
-def damage_card(title: str, name: str, rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return the card of a test part."""
-    tests = sum(row["split"] == "test" for row in rows)
-    told = len(rows) - tests
-    given = "A gearbox has one record, and no reference" if is_alone(name) else _TOLD.format(told)
-    return f"""# {title}, test part {name}
-
-{counted(tests, "record")} without labels in the split `test`. {given}.
-`state` and all that follows from it say `unknown`, or NaN. Numbers of records and
-gearboxes were drawn; order and files tell nothing. `config.yaml` is that of the part to learn from; the seed of this
-part is secret until labels are revealed.
-"""
 
 
 def damage_records(rows: list[dict[str, Any]], secret: bytes, name: str) -> PublishedRecords:
@@ -243,9 +219,8 @@ DAMAGE_QUESTION = Question(
     conditions=CONDITIONS,
     parts=with_alone,
     subject="Damage of gears",
-    rules=DAMAGE_RULES,
+    words="damage",
     train="reference",
-    part_card=damage_card,
     shown=damage_records,
     task=DETECT,
     records=detect.EVERY,
@@ -255,28 +230,6 @@ DAMAGE_QUESTION = Question(
     scores_are="AUC of damaged against healthy records of other gearboxes",
     tracks={False: "Alone", True: "Beside a healthy record of the same gearbox"},
 )
-
-LIFE_RULES = """\
-* One number for each record of the split `test`, the last inspection shown of a gearbox: `rul_h`, the hours
-  until its functional end; `rul_q10_h` and `rul_q90_h` may stand beside it.
-* Everything that the part shows of the gearbox may be used: signals, `life/inspections` (age), `life/debris`,
-  `life/pictures`. Other gearboxes of the part may not be used.
-* Learn and choose on `learn` alone. Nothing is learned from test parts.
-* In `other_load` gearboxes run between inspections at 1.05 times the torque of their records, and not as in `learn`.
-* Gearboxes that were taken out before they failed are in no error. Nobody can tell them before labels are revealed."""
-
-
-def life_card(title: str, name: str, rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return the card of a test part."""
-    asked = len({row["specimen_id"] for row in rows})
-    return f"""# {title}, test part {name}
-
-{counted(len(rows), "record")} of {counted(asked, "gearbox", "gearboxes")}, each up to one of its inspections, which
-was drawn. The split `test` has that inspection, at which the remaining life is asked, the split `train` those before.
-`state` and all that follows from it say `unknown`, or NaN. `life/` has ages, debris and pictures. Numbers of records
-and gearboxes were drawn; order and files tell nothing. `config.yaml` is that of the part to learn from; the seed of
-this part is secret until labels are revealed.
-"""
 
 
 def life_records(rows: list[dict[str, Any]], secret: bytes, name: str) -> PublishedRecords:
@@ -300,9 +253,8 @@ LIFE_QUESTION = Question(
     conditions=LIFE_CONDITIONS,
     parts=dict,
     subject="Remaining life of gears",
-    rules=LIFE_RULES,
+    words="life",
     train="history",
-    part_card=life_card,
     shown=life_records,
     task=REMAINING_LIFE,
     records=remaining_life.EVERY,

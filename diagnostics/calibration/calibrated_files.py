@@ -17,7 +17,7 @@ from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS
 from diagnostics.calibration.noise_fit import HEADROOM, NoiseFit
 from diagnostics.calibration.path_draws import PathDraw
 from diagnostics.calibration.source_library import sampled_as
-from diagnostics.page.sentences import Sentences, filled
+from diagnostics.page.sentences import Sentences, filled, listed
 from diagnostics.statistics.evaluation import Interval
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
@@ -144,8 +144,7 @@ def calibration_facts(found: Calibration) -> dict[str, Any]:
 
 def not_identified(found: Calibration) -> list[str]:
     """Return what the recordings of a calibration do not tell, a sentence each."""
-    text = filled(TEMPLATES / "not_identified.txt", rig=found.rig, stage=found.stage, headroom=HEADROOM)
-    return text.splitlines()
+    return listed(TEMPLATES / "not_identified.txt", rig=found.rig, stage=found.stage, headroom=HEADROOM)
 
 
 def _interval(value: Interval) -> str:

@@ -47,6 +47,7 @@ def baseline(
 
     Example: siggen-diagnostics baseline 1.csv 2.csv 3.csv 4.csv --fs 25600 --teeth 25,56 --speed 14,26 -o rig
     """
+    from diagnostics.base.extras import require_packages
     from diagnostics.base.progress import terminal_stage
     from diagnostics.machine.check import rate_sentence
     from diagnostics.machine.healthy_state import first_readable, healthy_state, thin_sentence
@@ -54,6 +55,7 @@ def baseline(
     from diagnostics.recordings.taken import channel_names, unit_or_unknown
     from diagnostics.records.gear_train import gear_names
 
+    require_packages("a machine", "jinja2")
     sources = recordings_of(healthy)
     read = recording.read(sources[0])
     train, facts, span = gears.train(read, "--teeth"), read.facts(), read.speed_range_hz()

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from diagnostics.base.progress import Stage, silent_stage
-from diagnostics.explore.look import look_of, look_page
+from diagnostics.explore.look import RECORDS_WORDS, look_of, look_page
 from diagnostics.explore.measured_page import ShownRecording, missing_sentences, recordings_source
 from diagnostics.explore.payload import PageSource, RecordList, packed_column, unpacked_column
 from diagnostics.explore.set_page import LookOptions, set_name
@@ -220,7 +220,7 @@ def write_beside_page(
 def _missing(shown: Sequence[ShownRecording], measured: PageSource, simulated: PageSource) -> list[str]:
     """Return which channel is taken for which, and what either side does not give."""
     named = {ours: theirs for ours, theirs in channel_mapping(measured, simulated).items() if ours != theirs}
-    taken = [f"The recordings' channel {ours} is shown as {theirs} of the set." for ours, theirs in named.items()]
+    taken = [RECORDS_WORDS.taken_for(*names) for names in named.items()]
     labels = {name: simulated.labels[name] for name in ("fault", "specimen_id")}
     damaged = bool((labels["fault"] != HEALTHY).any())
     of_the_set = missing_parts(labels, simulated.overlay, damaged, bool(simulated.quantities), named=True)

@@ -10,9 +10,10 @@ from diagnostics.base.progress import Stage
 from diagnostics.explore.payload import PageSource, RecordList, page_axes, page_details, page_head
 from diagnostics.page.blocks import Heading, Page, Paragraph, RecordsPlace
 from diagnostics.page.live import Live
-from diagnostics.page.wording import counted
+from diagnostics.page.sentences import Sentences
 
-FOLDER = Path(__file__).with_name("page")
+FOLDER, TEMPLATES = Path(__file__).with_name("page"), Path(__file__).with_name("templates")
+RECORDS_WORDS = Sentences(TEMPLATES / "records.txt")
 SCRIPTS = (
     *("vendored/uPlot.LICENSE", "vendored/uPlot.iife.min.js", "unpack.js", "charts.js", "waveform.js", "spectra.js"),
     *("averages.js", "internals.js", "flank.js", "life.js", "indicators.js", "histogram.js", "scatter.js"),
@@ -61,12 +62,8 @@ def look_of(source: PageSource, shown: RecordList, stage: Stage, *, full: bool =
 
 def look_page(title: str, look: Look) -> Page:
     """Return a page of nothing but records."""
-    records = int(look.source.labels["record_id"].size)
-    noun = "recording" if look.source.measured else "record"
-    held = "all signals" if look.source.kept.size == records else f"signals of {look.source.kept.size}"
-    said = f"{counted(records, noun)}, {counted(len(look.source.channels), 'channel')}, {held}."
-    how = "Choose by any column, open a record in the table or by a point. Drag over a chart to zoom."
-    return Page(title, [Heading(title, 1), Paragraph(f"{said} {how}"), RecordsPlace()], look.live)
+    opening = Paragraph(RECORDS_WORDS.opening(look.source))
+    return Page(title, [Heading(title, 1), opening, RecordsPlace()], look.live)
 
 
 def _files(names: tuple[str, ...]) -> str:

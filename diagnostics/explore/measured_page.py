@@ -12,10 +12,11 @@ from pathlib import Path
 import numpy as np
 
 from diagnostics.base.progress import Stage, silent_stage
-from diagnostics.explore.look import look_of, look_page
+from diagnostics.explore.look import TEMPLATES, look_of, look_page
 from diagnostics.explore.payload import PageSource, RecordList, packed_indicators
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.machine.recording_indicators import RecordingIndicators
+from diagnostics.page.sentences import listed
 from diagnostics.page.template import write_page
 from diagnostics.recordings.in_rig import in_rig
 from diagnostics.records.gear_train import gear_names, in_column
@@ -164,15 +165,4 @@ def write_recordings_page(
 
 def missing_sentences(healthy: int) -> list[str]:
     """Return what recordings do not give, and how to have it."""
-    found = [
-        "Damage, flanks, transmission error and mesh force: a recording does not tell them.",
-        "Teeth by number: tooth 1 is the one at the first pulse.",
-    ]
-    if healthy == 0:
-        found.append(
-            f"No recording is known to be a {REFERENCE}: nothing is laid over, and an indicator has no place among "
-            "healthy ones. Name the folder of `baseline` first, and its recordings too."
-        )
-    elif healthy < 3:
-        found.append("Fewer than three healthy recordings: an indicator has no place among them.")
-    return found
+    return listed(TEMPLATES / "missing_of_recordings.txt", healthy=healthy, reference=REFERENCE)

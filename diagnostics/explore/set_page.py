@@ -5,6 +5,7 @@ What a saved classifier names every record of a set, for the page's columns.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,11 +13,12 @@ from pathlib import Path
 import numpy as np
 
 from diagnostics.base.progress import Stage, silent_stage
-from diagnostics.explore.look import Look, look_of, look_page
+from diagnostics.explore.look import RECORDS_WORDS, TEMPLATES, Look, look_of, look_page
 from diagnostics.explore.payload import PageSource, RecordList
 from diagnostics.explore.set_source import chosen_records, missing_parts, set_source
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.table import RecordTable, record_table
+from diagnostics.page.sentences import filled
 from diagnostics.page.template import write_page
 from diagnostics.prediction.released_model import ReleasedModel
 from diagnostics.records.record_classes import set_classes
@@ -37,15 +39,6 @@ COLUMNS = (
 FILTERS = (("state", "State"), ("split", "Split"), ("specimen_id", "Gearbox"))
 NAMED_COLUMNS = (("predicted", "Predicted"), ("named", "Named"), ("seen", "Seen"))
 NAMED_FILTERS = (("class", "Class"), *NAMED_COLUMNS)
-CODE = """import diagnostics
-import siggen
-
-table = diagnostics.table(siggen.open("{name}"){own})  # a row per record; SET: your path to the set
-values = table.values[:, table.names.index("COLUMN")]
-healthy = table.labels["fault"] == "healthy"
-limit = sorted(values[healthy])[int(0.95 * healthy.sum())]  # one of twenty healthy records is above it
-print(table.labels["record_id"][values > limit])"""
-"""What the page offers to copy; an indicator of the user's own is named besides."""
 
 
 def predicted_labels(table: RecordTable, dataset: Dataset, released: ReleasedModel) -> dict[str, np.ndarray]:
@@ -86,18 +79,6 @@ def predicted_labels(table: RecordTable, dataset: Dataset, released: ReleasedMod
         "named": np.where(predicted == truth, RIGHT, WRONG),
         "seen": np.where(seen, SEEN, UNSEEN),
     }
-
-
-def seen_sentence(seen: Sequence[str]) -> str:
-    """Say how many of the records the model has learnt from; empty where none."""
-    count = sum(one == SEEN for one in seen)
-    if count == 0:
-        return ""
-    return (
-        f"The saved model names these records. It has learnt from the gearboxes of {count} of {len(seen)}, marked "
-        f"\N{LEFT DOUBLE QUOTATION MARK}{SEEN}\N{RIGHT DOUBLE QUOTATION MARK}: that they are named rightly says "
-        "nothing about other gearboxes. A report's scores come from models that never saw the gearbox."
-    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,15 +172,22 @@ def _shown(dataset: Dataset, source: PageSource, options: LookOptions, lives: Li
     known = options.model is not None
     damaged = bool((source.labels["fault"] != HEALTHY).any()) and hasattr(dataset, "damage")
     missing = missing_parts(source.labels, source.overlay, damaged, bool(source.quantities), named=known)
-    own = ", ".join(f'"{one.function.__module__}:{one.function.__name__}"' for one in options.own)
+    own = [f"{indicator.function.__module__}:{indicator.function.__name__}" for indicator in options.own]
+    code = filled(TEMPLATES / "code.txt", name=_literal(dataset.path.name), own=_literal(own) if own else "")
+    seen = int((source.labels["seen"] == SEEN).sum()) if known else 0
     return RecordList(
         columns=(*COLUMNS[:2], *(NAMED_COLUMNS if known else ()), *lives.titles, *COLUMNS[2:]),
         filters=(*FILTERS, *(NAMED_FILTERS if known else ())),
         missing=missing,
-        seen=seen_sentence([str(one) for one in source.labels["seen"]]) if known else "",
-        code=CODE.format(name=dataset.path.name, own=f", indicators=[{own}]" if own else ""),
+        seen=RECORDS_WORDS.seen(seen, source.labels["fault"].size, SEEN),
+        code=code.rstrip(),
         ranked=list(options.ranked),
     )
+
+
+def _literal(value: str | list[str]) -> str:
+    """Return a value as Python writes it, whatever signs it has."""
+    return json.dumps(value, ensure_ascii=False)
 
 
 def write_set_page(

@@ -20,6 +20,7 @@ from diagnostics.indicators.registry import column_title
 from diagnostics.machine.comparable import FEWEST_OVER_SPEED, LOAD_RATIO, SPEED_RATIO, comparable
 from diagnostics.machine.healthy_state import pieces_of
 from diagnostics.machine.machine import CHECKS, Machine
+from diagnostics.page.sentences import Sentences
 from diagnostics.prediction.record_pieces import RecordPieces
 from diagnostics.recordings.level_alike import MOST_DB
 from diagnostics.recordings.measured_recording import MeasuredRecording
@@ -29,6 +30,7 @@ from diagnostics.training.referenced import log_values
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
 
+MACHINE_WORDS = Sentences(Path(__file__).with_name("templates") / "machine.txt")
 UNCHANGED, CHANGED, OTHER_CONDITIONS, CANNOT_TELL = "unchanged", "changed", "other load or speed", "cannot tell"
 LISTED = 8
 ALIKE_DB, DOUBTFUL_DB = 10.0, 15.0
@@ -198,18 +200,8 @@ def load_sentence(machine: Machine, load: float | None) -> str:
 
 def rate_sentence(references: int, wanted: float) -> str:
     """Return how many false alarms to expect, and what more recordings would give."""
-    promised = attainable_rate(references, wanted)
-    if promised <= wanted:
-        return (
-            f"On average over sets of references about {100 * wanted:.0f} of 100 recordings of the unchanged machine "
-            "will be called changed; one given set may do better or worse."
-        )
     needed = int(np.ceil(1.0 / wanted - 1.0 - 1e-9))
-    return (
-        f"With {references} references at most {100 * promised:.0f} of 100 recordings of the unchanged machine will be "
-        f"called changed, on average over sets of references; one given set may do worse. If scores are log-normal it "
-        f"is about {100 * wanted:.0f} of 100. A promise of {100 * wanted:.0f} takes {needed} references."
-    )
+    return MACHINE_WORDS.rate(references, attainable_rate(references, wanted), wanted, needed)
 
 
 def _same(machine: Machine, logs: np.ndarray) -> str | None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from datetime import datetime, timedelta
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from diagnostics.machine.check import CHANGED, UNCHANGED, Check, PastCheck, rate_sentence
+from diagnostics.machine.check import CHANGED, MACHINE_WORDS, UNCHANGED, Check, PastCheck, rate_sentence
 from diagnostics.machine.machine import Machine
 from diagnostics.page.blocks import (
     Cell,
@@ -23,7 +24,6 @@ from diagnostics.page.blocks import (
 from diagnostics.page.style import FAULT_COLOURS, HEALTHY_COLOUR, new_figure, png_bytes, styled
 from diagnostics.page.tables import cell, table
 from diagnostics.page.template import write_page
-from diagnostics.page.wording import capitalised
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -48,11 +48,13 @@ def write_machine_page(machine: Machine, folder: Path, checks: Sequence[Check], 
     """Write `machine.html` into the machine's folder; return its path."""
     with styled():
         figure = png_bytes(_trend(history))
+    counts = Counter(check.verdict for check in checks)
+    used = min((check.used for check in checks if check.score is not None), default=len(machine.references))
+    files = dict.fromkeys(check.recording.partition(":")[0] for check in checks)
     parts = [
-        Heading(f"Machine {folder.name}: {_headline(checks)}", 1),
+        Heading(f"Machine {folder.name}: {', '.join(counts)}", 1),
         *summary_blocks(
-            [_headline_sentence(checks), NO_STATE, rate_sentence(_used(machine, checks), machine.false_alarms)],
-            _tone(checks),
+            [MACHINE_WORDS.headline(counts), NO_STATE, rate_sentence(used, machine.false_alarms)], _tone(set(counts))
         ),
         FigureGrid([FigureBlock(figure, TREND)]),
         table(
@@ -61,7 +63,7 @@ def write_machine_page(machine: Machine, folder: Path, checks: Sequence[Check], 
             *("Newest checks.", ".4g"),
             text=True,
         ),
-        Paragraph(_look(folder, checks)),
+        Paragraph(MACHINE_WORDS.look(folder.name, [*files])),
         *(_moved_table(check) for check in checks if check.moved),
         Heading("References"),
         *note_blocks(machine.doubts),
@@ -77,35 +79,9 @@ def write_machine_page(machine: Machine, folder: Path, checks: Sequence[Check], 
     return page
 
 
-def _look(folder: Path, checks: Sequence[Check]) -> str:
-    """Say how to look at the recordings themselves."""
-    files = " ".join(dict.fromkeys(check.recording.partition(":")[0] for check in checks))
-    return (
-        f"The recordings themselves, over healthy ones: `siggen-diagnostics explore {folder.name} {files}` with the "
-        "files of healthy recordings. A set behind them, which `calibrate` led to, is laid over them."
-    )
-
-
-def _tone(checks: Sequence[Check]) -> str:
+def _tone(verdicts: set[str]) -> str:
     """Return green where nothing has changed, red where something has, neither where a check cannot tell."""
-    said = {check.verdict for check in checks}
-    return "failed" if CHANGED in said else "passed" if said == {UNCHANGED} else ""
-
-
-def _headline(checks: Sequence[Check]) -> str:
-    return ", ".join(dict.fromkeys(check.verdict for check in checks))
-
-
-def _headline_sentence(checks: Sequence[Check]) -> str:
-    counts = {
-        verdict: sum(check.verdict == verdict for check in checks)
-        for verdict in dict.fromkeys(c.verdict for c in checks)
-    }
-    return capitalised("; ".join(f"{count} of {len(checks)} {verdict}" for verdict, count in counts.items())) + "."
-
-
-def _used(machine: Machine, checks: Sequence[Check]) -> int:
-    return min((check.used for check in checks if check.score is not None), default=len(machine.references))
+    return "failed" if CHANGED in verdicts else "passed" if verdicts == {UNCHANGED} else ""
 
 
 def _moved_table(check: Check) -> TableBlock:
@@ -113,8 +89,7 @@ def _moved_table(check: Check) -> TableBlock:
         (Cell(one.title, one.indicator), one.channel, cell(one.factor, ".3g"), cell(one.spreads, "+.1f"))
         for one in check.moved
     ]
-    caption = f"{check.recording} ({check.verdict}): indicators farthest from the healthy recordings."
-    return table(("Indicator", "Channel", "Factor", "Spreads"), rows, caption, sortable=True)
+    return table(("Indicator", "Channel", "Factor", "Spreads"), rows, MACHINE_WORDS.moved(check), sortable=True)
 
 
 def _trend(history: Sequence[PastCheck]) -> Figure:

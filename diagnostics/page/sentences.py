@@ -59,6 +59,11 @@ def filled(template: Path, **facts: Any) -> str:
     return f"{_template(template, {}).render(**facts).rstrip()}\n"
 
 
+def listed(template: Path, **facts: Any) -> list[str]:
+    """Return the lines of a template with its facts filled in, a sentence each."""
+    return [line for line in filled(template, **facts).splitlines() if line]
+
+
 def _template(path: Path, known: Mapping[str, Any]) -> Template:
     require_packages("a page", "jinja2")
     from jinja2 import Environment, FileSystemLoader, StrictUndefined

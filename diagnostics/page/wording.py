@@ -11,8 +11,8 @@ from diagnostics.statistics.evaluation import Interval
 
 def counted(number: int, noun: str) -> str:
     """Return a number with its noun, in the plural unless there is one."""
-    ending = "es" if noun.endswith(("x", "ss")) else "s"
-    return f"{number}\N{NO-BREAK SPACE}{noun if number == 1 else noun + ending}"
+    several = f"{noun[:-1]}ies" if noun.endswith("y") else f"{noun}es" if noun.endswith(("x", "ss")) else f"{noun}s"
+    return f"{number}\N{NO-BREAK SPACE}{noun if number == 1 else several}"
 
 
 def joined(parts: Sequence[str]) -> str:
