@@ -14,14 +14,13 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, product
-from pathlib import Path
 
 import numpy as np
 
 from diagnostics.recordings.level_alike import check_levels_alike, level_note
 from diagnostics.recordings.measured_recording import MeasuredRecording, read_recording
 from diagnostics.recordings.shaft_pulses import shaft_pulses
-from diagnostics.recordings.taken import RecordingFacts
+from diagnostics.recordings.taken import RecordingFacts, Source
 from diagnostics.records.gear_train import train_of
 from diagnostics.statistics.evaluation import UNDEFINED, Interval
 from siggen.errors import UsageError
@@ -31,8 +30,6 @@ FEWEST_RECORDINGS = 3
 """Fewer give no interval: two have one difference, which is small by chance too often to tell a spread."""
 
 FEWEST_TURNS = 10
-
-Source = tuple[Path, int | None]
 
 
 def jackknife(values: np.ndarray) -> Interval:

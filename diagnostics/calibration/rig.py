@@ -15,7 +15,7 @@ from diagnostics.calibration.healthy_blocks import HealthyBlock
 from diagnostics.calibration.order_record import OrderRecord
 from diagnostics.calibration.path_draws import number_limits
 from diagnostics.recordings.in_rig import in_rig
-from diagnostics.recordings.taken import RecordingFacts, channel_names, take
+from diagnostics.recordings.taken import RecordingFacts, Source, channel_names, take
 from siggen.errors import UsageError
 
 LINES, AROUND, LEAST_SHOWN = 10, 4, 0.25
@@ -96,9 +96,7 @@ def read_rig(file: Path) -> CalibratedRig:
     return found
 
 
-def rig_channels(
-    rig: CalibratedRig, source: tuple[Path, int | None], facts: RecordingFacts
-) -> tuple[tuple[str, ...], dict[str, str]]:
+def rig_channels(rig: CalibratedRig, source: Source, facts: RecordingFacts) -> tuple[tuple[str, ...], dict[str, str]]:
     """Return the channels of a rig, and the column of each where it has another name.
 
     Parameters

@@ -18,7 +18,7 @@ from siggen.errors import EXIT_USAGE, UsageError
 
 if TYPE_CHECKING:
     from diagnostics.prediction.prediction import Prediction
-    from diagnostics.recordings.taken import RecordingFacts
+    from diagnostics.recordings.taken import RecordingFacts, Source
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,20 +124,20 @@ def _tell(found: Mapping[str, Prediction], refused: Mapping[str, str]) -> None:
     echo(MEANING)
 
 
-def _names(sources: Sequence[tuple[Path, int | None]]) -> list[str]:
+def _names(sources: Sequence[Source]) -> list[str]:
     """Return what recordings are called: by their files, by whole paths where two of these have one name."""
     files = [path.as_posix() if _alike(sources) else path.name for path, _ in sources]
     return [file if row is None else f"{file}:{row}" for file, (_, row) in zip(files, sources, strict=True)]
 
 
-def _folders(sources: Sequence[tuple[Path, int | None]]) -> list[str]:
+def _folders(sources: Sequence[Source]) -> list[str]:
     """Return what the folder of each is called: like the recording, in one part."""
     files = [path.relative_to(path.anchor).parts if _alike(sources) else (path.name,) for path, _ in sources]
     rows = [() if row is None else (str(row),) for _, row in sources]
     return ["_".join((*file, *row)) for file, row in zip(files, rows, strict=True)]
 
 
-def _alike(sources: Sequence[tuple[Path, int | None]]) -> bool:
+def _alike(sources: Sequence[Source]) -> bool:
     return len({(path.name, row) for path, row in sources}) < len(sources)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeAlias
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -15,14 +15,12 @@ from siggen.errors import UsageError
 
 if TYPE_CHECKING:
     from diagnostics.recordings.rig_file import RigFile
-    from diagnostics.recordings.taken import RecordingFacts
+    from diagnostics.recordings.taken import RecordingFacts, Source
     from siggen.columns.drivetrain import GearTrain
 
 ROWS = re.compile(r"\d+(,\d+)*")
 RPM = ("rpm", "1/min", "min-1", "u/min")
 SPEED = re.compile(r"(\d+(?:\.\d*)?|\.\d+) *(hz|rpm|1/min|min-1|u/min)?", re.IGNORECASE)
-Source: TypeAlias = tuple[Path, int | None]
-"""File, and row of a Parquet file with one record per row."""
 KNOWN_WITHIN = 0.03
 """Relative: slip of a loaded motor, or a nameplate's rounding."""
 
@@ -206,7 +204,7 @@ def is_recording(said: str) -> bool:
     return path.is_file()
 
 
-def file_rows(said: str) -> list[tuple[Path, int | None]]:
+def file_rows(said: str) -> list[Source]:
     """Return file and row of every recording that FILE or FILE:ROW,ROW names; a file of that very name goes first."""
     file, colon, rows = said.rpartition(":")
     if not colon or Path(said).exists() or not ROWS.fullmatch(rows):

@@ -31,19 +31,18 @@ from siggen.errors import UsageError, counted
 Found = tuple[dict[str, float], list[RecordProblem]]
 
 
-def all_own(own: Sequence[OwnIndicator]) -> tuple[OwnIndicator, ...]:
-    """Return the registered indicators and these.
+def named_once(own: Sequence[OwnIndicator]) -> tuple[OwnIndicator, ...]:
+    """Return these indicators.
 
     Raises
     ------
     UsageError
         If two have one name.
     """
-    found = (*registered(), *own)
-    names = [indicator.name for indicator in found]
+    names = [indicator.name for indicator in own]
     if twice := sorted({name for name in names if names.count(name) > 1}):
         raise UsageError(f"indicators: the names {twice} came twice; rename one function of each pair")
-    return found
+    return tuple(own)
 
 
 def own_columns(
@@ -150,7 +149,6 @@ class GearFacts:
 
 
 IndicatorFunction = Callable[[np.ndarray, np.ndarray, GearFacts], float]
-_REGISTERED: dict[str, OwnIndicator] = {}
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,53 +191,6 @@ def _one_number(found: Any) -> float:
     if math.isinf(number):
         raise ValueError("returned an infinite number; nan stands for undefined")
     return number
-
-
-def register(name: str) -> Callable[[IndicatorFunction], IndicatorFunction]:
-    """Return a decorator that puts a function among the indicators of this process.
-
-    Parameters
-    ----------
-    name : str
-        Name of its columns: lower case letters, digits and single underscores; no name that the package has.
-
-    Raises
-    ------
-    UsageError
-        If the name cannot be used, or another function has it; the same function defined again replaces itself.
-    """
-    _check_name(name)
-
-    def keep(function: IndicatorFunction) -> IndicatorFunction:
-        before = _REGISTERED.get(name)
-        if before is not None and _defined_as(before.function) != _defined_as(function):
-            raise UsageError(
-                f"indicator name: {name!r} is registered for {'.'.join(_defined_as(before.function))} already; choose "
-                f"another name, or call unregister({name!r}) first"
-            )
-        _REGISTERED[name] = OwnIndicator(name, function)
-        return function
-
-    return keep
-
-
-def _defined_as(function: IndicatorFunction) -> tuple[str, str]:
-    """Return module and qualified name: a notebook's cell that runs again defines the same function anew."""
-    kind = type(function)
-    return (
-        str(getattr(function, "__module__", kind.__module__)),
-        str(getattr(function, "__qualname__", f"{kind.__qualname__} at {id(function):#x}")),
-    )
-
-
-def registered() -> tuple[OwnIndicator, ...]:
-    """Return the registered indicators in the order of their registration."""
-    return tuple(_REGISTERED.values())
-
-
-def unregister(name: str) -> None:
-    """Take an indicator out of the registry; unknown names are ignored."""
-    _REGISTERED.pop(name, None)
 
 
 def load_indicators(references: Sequence[str] | None) -> tuple[OwnIndicator, ...]:

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache, partial
 from pathlib import Path
@@ -27,8 +27,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from diagnostics.base.beside import beside
+from diagnostics.base.progress import Advance
 from diagnostics.indicators.line_levels import LEVELS
-from diagnostics.indicators.own_indicator import OwnIndicator, all_own, own_columns
+from diagnostics.indicators.own_indicator import OwnIndicator, named_once, own_columns
 from diagnostics.indicators.record import RecordResult, record_result
 from diagnostics.indicators.registry import IndicatorColumn, check_quantity, columns, indicator_columns
 from diagnostics.indicators.settings import IndicatorSettings
@@ -47,7 +48,6 @@ DIGITS = 12
 WHOLE = "benchmark.json"
 """Lies one or two folders above the parts of a benchmark."""
 
-Advance = Callable[[], None]
 PULSE_CONDITIONS = ("pulses_per_s", "speed_variation_percent", "start_turn")
 SAMPLE_CONDITIONS = ("checksum", "samples", *BYTES)
 COMPLEX = pa.list_(pa.float32())
@@ -268,7 +268,7 @@ def record_table(
     settings : IndicatorSettings, optional
         Default: `IndicatorSettings()`.
     own : sequence of OwnIndicator
-        The user's, besides those that are registered.
+        The user's.
     workers : int
         Processes; 1 computes in this one.
     advance : callable, optional
@@ -281,7 +281,7 @@ def record_table(
     UsageError
         If two indicators have one name, or one has the name of a column.
     """
-    chosen, mine = settings or IndicatorSettings(), all_own(own)
+    chosen, mine = settings or IndicatorSettings(), named_once(own)
     channels = tuple(channel.name for channel in dataset.channels)
     every = tuple(str(channel["name"]) for channel in dataset.manifest.get("channels", ()))
     files = [table_file(dataset, chosen, names) for names in dict.fromkeys((every, channels)) if names]

@@ -25,7 +25,7 @@ from diagnostics.prediction.record_pieces import RecordPieces, at_rate, record_p
 from diagnostics.recordings.level_alike import check_levels_alike
 from diagnostics.recordings.measured_recording import MeasuredRecording, read_recording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
-from diagnostics.recordings.taken import RecordingFacts, TakenRecording, take
+from diagnostics.recordings.taken import RecordingFacts, Source, TakenRecording, take
 from diagnostics.statistics.change_score import FEWEST
 from siggen.columns.drivetrain import GearTrain
 from siggen.errors import UsageError, counted
@@ -121,9 +121,6 @@ LONGEST_PIECE_S = 10.0
 LEAST_SLIP, MOST_SLIP = 0.001, 0.05
 FEWEST_TURNS = 10
 """Of the first shaft in a piece; averages of fewer leave the noise in."""
-
-Source = tuple[Path, int | None]
-"""A file, and which row of it."""
 
 
 def healthy_state(

@@ -42,11 +42,6 @@ def page_html(page: Page) -> str:
     return f"{text.lstrip()}\n"
 
 
-def style_sheet() -> str:
-    """Return the style of all pages."""
-    return str(environment().get_template("style.css").render(printed_rows=PRINTED_ROWS))
-
-
 @cache
 def environment() -> Environment:
     """Return where templates come from and what they may call.

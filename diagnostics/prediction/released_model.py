@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from diagnostics.base.extras import missing_packages
 from diagnostics.base.reading_process import read_apart
-from diagnostics.indicators.own_indicator import OwnIndicator, all_own
+from diagnostics.indicators.own_indicator import OwnIndicator, named_once
 from diagnostics.indicators.registry import indicator_columns
 from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.judging.judgement import NETWORK
@@ -188,7 +188,7 @@ def _own_of(
     """
     taken = {name.split("__")[0] for classifier in classifiers.values() for name in classifier.features}
     wanted = sorted(taken - indicator_columns(load_settings(folder), facts.names).keys())
-    given = {indicator.name: indicator for indicator in all_own(own)}
+    given = {indicator.name: indicator for indicator in named_once(own)}
     if missing := [name for name in wanted if name not in given]:
         raise UsageError(
             f"{folder}: was trained with your own indicators {', '.join(missing)}, which are not part of a model; give "

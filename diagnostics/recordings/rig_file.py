@@ -17,7 +17,7 @@ from math import inf
 from pathlib import Path
 from typing import Any
 
-from diagnostics.recordings.taken import RecordingFacts, channel_columns, take
+from diagnostics.recordings.taken import RecordingFacts, Source, channel_columns, take
 from siggen.errors import ConfigError, Problem, UsageError
 from siggen.file_writing import write_file
 from siggen.keys.yaml_source import read_yaml
@@ -148,7 +148,7 @@ def read_rig_file(file: Path) -> RigFile:
     return RigFile(said, teeth, found.get("speed"), found.get("torque_nm"))
 
 
-def write_rig_file(file: Path, source: tuple[Path, int | None]) -> None:
+def write_rig_file(file: Path, source: Source) -> None:
     """Write a rig file with the channels of a recording; what else it may say stands in comments.
 
     Raises

@@ -88,7 +88,8 @@ def looks_like_time(column: np.ndarray) -> bool:
         return False
     steps = np.diff(column)
     usual = float(np.median(steps))
-    return usual > 0.0 and bool((steps > 0.0).all()) and float(np.mean(np.abs(steps - usual) <= 0.5 * usual)) >= ALIKE
+    alike = np.mean(np.abs(steps - usual) <= ALIKE_STEP * usual) >= ALIKE
+    return usual > 0.0 and bool((steps > 0.0).all() and alike)
 
 
 def counts_samples(column: np.ndarray) -> bool:
@@ -140,9 +141,8 @@ def _refuse_jumps(path: Path, name: str, column: np.ndarray, steps: np.ndarray) 
     back = np.flatnonzero(steps < 0.0) + 1
     alike = np.mean(np.abs(steps - usual) <= 0.1 * usual) >= ALIKE if usual > 0.0 else False
     repeated = np.mean(steps == 0.0) > 0.3
-    limit = GAP_STEP if alike else 2.0 * GAP_STEP
-    if repeated:  # the steps between stamps that repeat are all long
-        limit = 2.0 * GAP_STEP
+    # the steps between stamps that repeat are all long
+    limit = GAP_STEP if alike and not repeated else 2.0 * GAP_STEP
     gaps = np.flatnonzero(steps > limit * usual) + 1 if usual > 0.0 else np.empty(0, dtype=np.int64)
     jumps = np.union1d(back, gaps).astype(np.int64)
     if not jumps.size:

@@ -38,6 +38,8 @@ CUT_SHARE = 1e-3
 """Lengths that differ by less are those of one recording, stopped channel by channel."""
 STATED_ALIKE, TIMES_ALIKE = 1e-5, 1e-3
 """Rates that are the same: of a header, and of times that are rounded."""
+Source = tuple[Path, int | None]
+"""File of a recording, and its row in a Parquet file with one record per row."""
 OWN_COLUMN = "accel_{}_m_s2"
 """How siggen calls a channel in files whose columns cannot say what they hold, such as CSV."""
 

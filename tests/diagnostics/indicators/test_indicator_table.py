@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from diagnostics.indicators.history import central_moments, dominant_harmonic, moment_over_history
-from diagnostics.indicators.own_indicator import GearFacts, OwnIndicator, own_values, register, unregister
+from diagnostics.indicators.own_indicator import GearFacts, OwnIndicator, own_values
 from diagnostics.indicators.ranking_table import IndicatorTable, ranking_table
 from diagnostics.indicators.record import record_result, record_values
 from diagnostics.indicators.registry import ALL, BY_NAME, indicator_columns, taken_of
@@ -134,11 +134,7 @@ def peak(signal: np.ndarray, tacho_s: np.ndarray, gears: GearFacts) -> float:
 
 
 def test_own_indicator_stands_beside_the_others(small: Any) -> None:
-    register("own_peak")(peak)
-    try:
-        found = indicator_table(small, [OwnIndicator("other", peak)])
-    finally:
-        unregister("own_peak")
+    found = indicator_table(small, [OwnIndicator("own_peak", peak), OwnIndicator("other", peak)])
     record = next(recordings(small))
     expected = float(np.abs(record.channels["bearing_horizontal"]).max()) * 18 * record.tacho_s.size
     assert column(found, "own_peak__bearing_horizontal")[0] == pytest.approx(expected)

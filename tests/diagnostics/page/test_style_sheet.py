@@ -7,9 +7,10 @@ import re
 import numpy as np
 import pytest
 
-from diagnostics.page.template import style_sheet
+from diagnostics.page.blocks import Page
+from diagnostics.page.template import page_html
 
-STYLE = style_sheet()
+STYLE = page_html(Page("no blocks", []))
 LIGHT, DARK = (
     dict(re.findall(r"--(\w+):#(\w+)", part))
     for part in re.findall(r":root(?::not\(.print\))?\{(.*?)\}", STYLE, re.DOTALL)
