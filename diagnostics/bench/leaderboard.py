@@ -171,15 +171,15 @@ def benchmark_records(benchmark: Benchmark, workers: int) -> BenchRecords:
     check_table(first, learn)  # test records are answered whatever they are
     tables = [first, *(record_table(benchmark.part(name), workers=workers) for name in benchmark.parts)]
     matrices = [feature_matrix(classifier_table(table)) for table in tables]
-    labels = {name: np.concatenate([one.labels[name] for one in matrices]) for name in matrices[0].labels}
-    matrix = replace(matrices[0], values=np.concatenate([one.values for one in matrices]), labels=labels)
+    labels = {name: np.concatenate([part.labels[name] for part in matrices]) for name in matrices[0].labels}
+    matrix = replace(matrices[0], values=np.concatenate([part.values for part in matrices]), labels=labels)
     waveforms = [row for table in tables for row in table.complex_rows("waveform")]
     count = len(matrices[0].values)
     orders = max(lines.size for row in waveforms[:count] for lines in row)
     asked = (np.arange(len(matrix.values)) < count) | (labels["split"] == "test")
     lines = line_array(waveforms)[..., : max(orders, 1)]
     ways = [True, *map(is_alone, benchmark.parts)]
-    alone = np.repeat(ways, [len(one.values) for one in matrices])
+    alone = np.repeat(ways, [len(part.values) for part in matrices])
     return BenchRecords(matrix, lines, _references(labels), asked, alone, count, first.channels, first.teeth[0])
 
 
@@ -189,8 +189,8 @@ def _references(labels: Mapping[str, np.ndarray]) -> np.ndarray:
     places = list(zip(labels["specimen_id"].tolist(), labels["operating_point_id"].tolist(), strict=True))
     for row in np.flatnonzero((labels["fault"] == HEALTHY) & (labels["state"] != SHAM)).tolist():
         first.setdefault(places[row], row)
-    found = np.array([first.get(place, -1) for place in places], dtype=np.int64)
-    return np.where(found == np.arange(found.size), -1, found)
+    rows = np.array([first.get(place, -1) for place in places], dtype=np.int64)
+    return np.where(rows == np.arange(rows.size), -1, rows)
 
 
 def seen_records(records: BenchRecords, *, referenced: bool) -> SeenRecords:
@@ -317,7 +317,7 @@ def entries(seen: SeenRecords, seed: int) -> list[Entry]:
 
     bands, convolutions = (np.where(np.isfinite(x), x, 0.0) for x in (seen.bands, seen.convolutions))
     lots = generator(seed, Purpose.PERMUTATION, CHANCE_OWNER).uniform(size=every.size)
-    found = [
+    baselines = [
         Entry(CHANCE, AsItIs, lots, every),
         Entry(RMS, logistic, named("rms"), every),
         Entry(KURTOGRAM, AsItIs, seen.kurtogram, every),
@@ -327,7 +327,7 @@ def entries(seen: SeenRecords, seed: int) -> list[Entry]:
         Entry(CONVOLUTIONS, ridge, convolutions, every),
         Entry(NETWORK, partial(StoppedNetwork, seen.averages, stops, seed), np.arange(every.size), every),
     ]
-    return found[:-1] if missing_packages("torch", "safetensors") else found
+    return baselines[:-1] if missing_packages("torch", "safetensors") else baselines
 
 
 def stacked(seen: SeenRecords, known: Sequence[Entry], every: Mapping[str, np.ndarray], seed: int) -> np.ndarray:
@@ -348,8 +348,8 @@ def stacked(seen: SeenRecords, known: Sequence[Entry], every: Mapping[str, np.nd
     from sklearn.preprocessing import StandardScaler
 
     fold = Design(FOLDS, CHANCE_OWNER).dealt(seen.gearbox, seed)[0]
-    own = (replace(entry, X=entry.X[: seen.learn]) for entry in known)
-    unseen = np.stack([pooled_scores(entry, seen.damaged, seen.gearbox, fold)[0] for entry in own], axis=1)
+    learning = (replace(entry, X=entry.X[: seen.learn]) for entry in known)
+    unseen = np.stack([pooled_scores(entry, seen.damaged, seen.gearbox, fold)[0] for entry in learning], axis=1)
     model = make_pipeline(StandardScaler(), LogisticRegression(class_weight="balanced", max_iter=1000))
     model.fit(unseen, seen.damaged)
     return np.asarray(model.decision_function(np.stack([every[entry.name] for entry in known], axis=1)))
@@ -403,15 +403,15 @@ def life_predictions(benchmark: Benchmark, seed: int, workers: int) -> Iterator[
     parts = {name: benchmark.part(name) for name in benchmark.parts}
     learn = inspections_of(benchmark.learn(), record_table(benchmark.learn(), workers=workers))
     tests = [blind_inspections(part, record_table(part, workers=workers)) for part in parts.values()]
-    found = joined([learn, *tests])
+    inspections = joined([learn, *tests])
     paces = [pace(benchmark.learn().config, LIFE_CONDITIONS.get(name, {})) for name in parts]
-    hour = np.repeat([1.0, *paces], [one.specimen.size for one in (learn, *tests)])
-    found = replace(found, age_h=found.age_h * hour)
-    known = np.arange(found.specimen.size) < learn.specimen.size
-    asked = ~known & (found.split == "test")
-    for name, predict in predictors(found, seed).items():
+    hour = np.repeat([1.0, *paces], [of_set.specimen.size for of_set in (learn, *tests)])
+    inspections = replace(inspections, age_h=inspections.age_h * hour)
+    known = np.arange(inspections.specimen.size) < learn.specimen.size
+    asked = ~known & (inspections.split == "test")
+    for name, predict in predictors(inspections, seed).items():
         hours = np.maximum(predict(known, asked) / hour[asked, None], 0.0)  # lives are never below 0
-        record = pa.array(found.record_id[asked], pa.int64())
+        record = pa.array(inspections.record_id[asked], pa.int64())
         yield pa.table({CLASSIFIER: [name] * len(record), RECORD: record, **dict(zip(COLUMNS, hours.T, strict=True))})
 
 
@@ -421,21 +421,21 @@ def pace(config: Mapping[str, Any], changes: Mapping[str, Any]) -> float:
     It is 1 where the configuration gives its load in N m: that of the test part is relative.
     """
     life = config["life"]
-    histories = [own or [[1.0, 1.0]] for own in ({**life, **changes.get("life", {})}["history"], life["history"])]
-    if any(len(block) > 2 for own in histories for block in own):
+    histories = [load or [[1.0, 1.0]] for load in ({**life, **changes.get("life", {})}["history"], life["history"])]
+    if any(len(block) > 2 for load in histories for block in load):
         return 1.0
     given = life["damage"]["torque_exponent"]
     exponent = 0.5 * sum(given) if isinstance(given, list) else given  # gearboxes draw theirs: the middle
-    wear, usual = (sum(h * ratio**exponent for h, ratio in own) / sum(h for h, _ in own) for own in histories)
+    wear, usual = (sum(h * ratio**exponent for h, ratio in load) / sum(h for h, _ in load) for load in histories)
     return float(wear / usual)
 
 
 def joined(parts: Sequence[Inspections]) -> Inspections:
     """Return the inspections of several sets, no two of which share a number of a gearbox; without averages."""
     arrays = {
-        one.name: np.concatenate([getattr(part, one.name) for part in parts])
-        for one in fields(Inspections)
-        if one.name not in ("indicators", "averages")
+        field.name: np.concatenate([getattr(part, field.name) for part in parts])
+        for field in fields(Inspections)
+        if field.name not in ("indicators", "averages")
     }
     indicators = {name: np.concatenate([part.indicators[name] for part in parts]) for name in parts[0].indicators}
     return replace(parts[0], **arrays, indicators=indicators, averages=None)
@@ -490,7 +490,7 @@ class BoardEntry:
 
     def count(self, part: str) -> int:
         """Return the gearboxes that limits count; those of all parts for their mean, since no two parts share one."""
-        return sum(self.gearboxes[one] for one in self.every) if part == MEAN else self.gearboxes[part]
+        return sum(self.gearboxes[name] for name in self.every) if part == MEAN else self.gearboxes[part]
 
 
 def leaderboard(
@@ -527,7 +527,7 @@ def leaderboard(
     question, spread = question_of(benchmark.learn().config), {}
     for side in question.tracks:
         names = parts_of(benchmark.parts, referenced=side)
-        spread[side] = chance_spread(question, [one for one in parts if one.name in names], seed)
+        spread[side] = chance_spread(question, [part for part in parts if part.name in names], seed)
     return write_board(benchmark, judged, spread, Path(out) if out else beside(benchmark.path, "_board"))
 
 
@@ -542,8 +542,9 @@ def board_entries(
         If there is none, or one cannot be judged; all problems of the first such file.
     """
     files = sorted(path for path in (folder.iterdir() if folder else ()) if path.suffix in SUFFIXES)
-    own = benchmark.path / BASELINES / PREDICTIONS_FILE
-    files = [*([own] if own.is_file() else []), *(file for file in files if file.resolve() != own.resolve())]
+    baselines = benchmark.path / BASELINES / PREDICTIONS_FILE
+    others = [file for file in files if file.resolve() != baselines.resolve()]
+    files = [*([baselines] if baselines.is_file() else []), *others]
     if not files:
         raise UsageError(
             f"{folder or benchmark.path}: holds no predictions ({', '.join(SUFFIXES)}); `diagnostics."
@@ -551,18 +552,18 @@ def board_entries(
         )
     question = question_of(benchmark.learn().config)
     weights = {part.name: bootstrap_weights(part.truth.specimen, seed, RESAMPLES) for part in parts}
-    found: dict[str, BoardEntry] = {}
+    board: dict[str, BoardEntry] = {}
     for file in files:
         read = prediction_table(file)
         columns = part_columns(benchmark, parts, read, file, file.stem)
         for name in dict.fromkeys(name for by_name in columns.values() for name in by_name):
-            if name in found:
+            if name in board:
                 raise UsageError(f"{file}: a second entry {name!r}; give each a name of its own (column {CLASSIFIER})")
             referenced = True in question.tracks and _is_referenced(read, name)
             names = parts_of(benchmark.parts, referenced=referenced)
             answers = {part: by_name[name] for part, by_name in columns.items() if name in by_name and part in names}
-            found[name] = _entry(name, question, referenced, answers, parts, weights)
-    return list(found.values())
+            board[name] = _entry(name, question, referenced, answers, parts, weights)
+    return list(board.values())
 
 
 def chance_spread(question: Question, parts: Sequence[JudgedPart], seed: int) -> float:
@@ -582,8 +583,8 @@ def chance_spread(question: Question, parts: Sequence[JudgedPart], seed: int) ->
         rng = generator(seed, Purpose.PERMUTATION, CHANCE_OWNER, place)
         asked = question.task.parts(part.truth)[question.records]
         truth, once = part.truth.rows(asked), np.ones((1, int(asked.sum())))
-        own = [question.measure.samples(rng.uniform(size=once.size), truth, once)[0] for _ in means]
-        means += np.array(own) / len(parts)
+        scores = [question.measure.samples(rng.uniform(size=once.size), truth, once)[0] for _ in means]
+        means += np.array(scores) / len(parts)
     return float(np.std(means, ddof=1))
 
 
@@ -601,7 +602,7 @@ def _is_referenced(read: pa.Table, name: str) -> bool:
         return False
     said = read.column(REFERENCE).to_pylist()
     whose = read.column(CLASSIFIER).to_pylist() if CLASSIFIER in read.column_names else [name] * len(said)
-    return any(bool(one) for one, own in zip(said, whose, strict=True) if str(own) == name)
+    return any(bool(used) for used, entry in zip(said, whose, strict=True) if str(entry) == name)
 
 
 def _entry(
@@ -613,11 +614,11 @@ def _entry(
     weights: Mapping[str, np.ndarray],
 ) -> BoardEntry:
     task, measure = question.task, question.measure
-    found: dict[str | None, dict[str, np.ndarray]] = {question.records: {}, question.leak: {}}
+    by_records: dict[str | None, dict[str, np.ndarray]] = {question.records: {}, question.leak: {}}
     for part in parts:
         said = task.answers(answers[part.name], part.truth) if part.name in answers else None
         asked = task.parts(part.truth) if said is not None else {}
-        for what, samples in found.items():
+        for what, samples in by_records.items():
             if what in asked and said is not None:
                 rows, drawn = part.truth.rows(asked[what]), weights[part.name][:, asked[what]]
                 samples[part.name] = measure.samples(said[asked[what]], rows, drawn)
@@ -627,8 +628,8 @@ def _entry(
     for of_part, columns in sorted(answers.items()):
         for column, values in sorted(columns.items()):
             digest.update(f"/{of_part}/{column}/".encode() + values.tobytes())
-    own = found[question.records], found[question.leak], counts, chance
-    return BoardEntry(name, referenced, question, *own, digest.hexdigest())
+    scores = by_records[question.records], by_records[question.leak], counts, chance
+    return BoardEntry(name, referenced, question, *scores, digest.hexdigest())
 
 
 LOG, CHAIN = "log", "chain"
@@ -651,7 +652,7 @@ def entry_log(file: Path, digest: str, entries: Sequence[BoardEntry]) -> list[di
     DatasetError
         If a line is not the one that was written.
     """
-    found, chain = [], digest
+    log, chain = [], digest
     for number, line in enumerate(_kept_log(file)):
         chain = _chained(chain, line)
         if line.get(CHAIN) != chain:
@@ -659,14 +660,14 @@ def entry_log(file: Path, digest: str, entries: Sequence[BoardEntry]) -> list[di
                 f"{file}: line {number + 1} of its log is not what was written there, or of another benchmark; lay the "
                 "file back, or name a new folder with out, where counting begins anew"
             )
-        found.append(line)
-    known = {(line[SIDE], line["answers"]) for line in found}
+        log.append(line)
+    known = {(line[SIDE], line["answers"]) for line in log}
     for entry in entries:
         if (entry.referenced, entry.answers) not in known:
             line = {"name": entry.name, SIDE: entry.referenced, "answers": entry.answers}
             chain = _chained(chain, line)
-            found.append({**line, CHAIN: chain})
-    return found
+            log.append({**line, CHAIN: chain})
+    return log
 
 
 def _kept_log(file: Path) -> list[dict[str, Any]]:
@@ -738,8 +739,8 @@ def write_board(
 
 def _ordered(entries: Sequence[BoardEntry], parts: Sequence[str], referenced: bool) -> list[BoardEntry]:
     """Return the entries of a track, the best mean first; those that lack a part last."""
-    own = [entry for entry in entries if entry.referenced == referenced and entry.every]
-    return sorted(own, key=lambda one: (len(one.every) < len(parts), -_goodness(one), one.name))
+    track = [entry for entry in entries if entry.referenced == referenced and entry.every]
+    return sorted(track, key=lambda entry: (len(entry.every) < len(parts), -_goodness(entry), entry.name))
 
 
 def _goodness(entry: BoardEntry) -> float:
@@ -777,8 +778,8 @@ def _lead(track: str, ordered: Sequence[BoardEntry]) -> str:
 
 
 def _holds_chance(entry: BoardEntry, part: str) -> bool:
-    found = area_interval(entry.leak[part], entry.gearboxes[part])
-    return not (found.low > 0.5 or found.high < 0.5)
+    limits = area_interval(entry.leak[part], entry.gearboxes[part])
+    return not (limits.low > 0.5 or limits.high < 0.5)
 
 
 def _figure(ordered: Sequence[BoardEntry]) -> FigureGrid:
@@ -834,7 +835,7 @@ def _numbers(ordered: Sequence[BoardEntry], benchmark: Benchmark) -> list[dict[s
             "name": entry.name,
             SIDE: entry.referenced,
             entry.question.score_key: {part: entry.score(part) for part in _parts(entry, benchmark)},
-            "sham": {part: area_interval(one, entry.gearboxes[part]) for part, one in entry.leak.items()},
+            "sham": {part: area_interval(samples, entry.gearboxes[part]) for part, samples in entry.leak.items()},
             "minus_first": {
                 part: paired(ordered[0], entry, part)
                 for part in _parts(entry, benchmark)
@@ -846,5 +847,5 @@ def _numbers(ordered: Sequence[BoardEntry], benchmark: Benchmark) -> list[dict[s
 
 
 def _parts(entry: BoardEntry, benchmark: Benchmark) -> tuple[str, ...]:
-    own = parts_of(benchmark.parts, referenced=entry.referenced)
-    return (*((MEAN,) if len(entry.every) == len(own) else ()), *entry.every)
+    asked = parts_of(benchmark.parts, referenced=entry.referenced)
+    return (*((MEAN,) if len(entry.every) == len(asked) else ()), *entry.every)

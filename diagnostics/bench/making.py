@@ -88,13 +88,13 @@ def read_secret(file: Path) -> bytes:
     if not file.exists():
         file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         write_file(file, _draw)
-    found = file.read_bytes().strip()
-    if len(found) < FEWEST_BYTES:
+    secret = file.read_bytes().strip()
+    if len(secret) < FEWEST_BYTES:
         raise UsageError(
-            f"{file}: received a secret of {len(found)} bytes; allowed: {FEWEST_BYTES} or more, drawn at random; "
+            f"{file}: received a secret of {len(secret)} bytes; allowed: {FEWEST_BYTES} or more, drawn at random; "
             "remove the file and one is drawn"
         )
-    return found
+    return secret
 
 
 def _draw(draft: Path) -> None:
@@ -117,7 +117,7 @@ def _merged(section: Any, value: Any) -> Any:
     """Return a section with the keys of a mapping, or the value itself; a section of another kind is a value."""
     if not isinstance(value, Mapping) or not isinstance(section, Mapping) or "kind" in value:
         return value
-    return {**section, **{name: _merged(section.get(name), own) for name, own in value.items()}}
+    return {**section, **{name: _merged(section.get(name), inner) for name, inner in value.items()}}
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,12 +156,12 @@ def life_tables(dataset: Dataset, numbers: Renumbered) -> tuple[dict[str, pa.Tab
 
 def _first_records(dataset: Dataset, numbers: Renumbered) -> dict[tuple[int, int], int]:
     """Return the first published record of every gearbox and inspection, by its number in the simulated set."""
-    found: dict[tuple[int, int], int] = {}
+    first: dict[tuple[int, int], int] = {}
     for row in dataset.labels(columns=["record_id", "specimen_id", "state_id"]).to_pylist():
         if row["record_id"] in numbers.record:
             key = row["specimen_id"], row["state_id"]
-            found[key] = min(found.get(key, row["record_id"]), row["record_id"])
-    return found
+            first[key] = min(first.get(key, row["record_id"]), row["record_id"])
+    return first
 
 
 def _shown_rows(table: pa.Table, first: Mapping[tuple[int, int], int], numbers: Renumbered) -> pa.Table:
@@ -175,8 +175,8 @@ def _renumbered_rows(
     for row in table.to_pylist():
         record = first.get((row["specimen_id"], row["inspection"]))
         if record is not None:
-            own = {"record_id": numbers.record[record], "specimen_id": numbers.gearbox[row["specimen_id"]]}
-            yield {**row, **own, "split": numbers.split(record)}
+            numbered = {"record_id": numbers.record[record], "specimen_id": numbers.gearbox[row["specimen_id"]]}
+            yield {**row, **numbered, "split": numbers.split(record)}
 
 
 UNKNOWN = "unknown"
@@ -227,7 +227,7 @@ def renumbered(part: SimulatedPart, shown: PublishedRecords, secret: bytes, name
     first = (place + 1) * PER_PART
     specimens = set(part.labels.column("specimen_id").to_pylist())
     ordered = shuffled(secret, f"records/{name}", shown.state_id)
-    ordered.sort(key=lambda one: one in shown.asked)  # stable: both kinds stay in their order
+    ordered.sort(key=lambda record: record in shown.asked)  # stable: both kinds stay in their order
     gearboxes = shuffled(secret, f"gearboxes/{name}", specimens)
     return Renumbered(
         {old: first + new for new, old in enumerate(ordered)},
@@ -248,15 +248,15 @@ def _of_role(schema: pa.Schema, role: Role) -> list[pa.Field]:
 
 def blind_rows(part: SimulatedPart, numbers: Renumbered) -> list[dict[str, Any]]:
     """Return the rows of a part by their new numbers, with signals."""
-    found = []
+    rows = []
     kept = [*GIVEN, *condition_fields(part.labels).names]
     kept += [name for name in part.labels.column_names if name.startswith(TEETH)]
     for batch in part.batches:
         for place, record in enumerate(batch.column("record_id").to_pylist()):
             if record in numbers.record:
                 row = as_record(batch.slice(place, 1))
-                found.append(_blind(row, numbers, kept, part.signals))
-    return sorted(found, key=lambda row: int(row["record_id"]))
+                rows.append(_blind(row, numbers, kept, part.signals))
+    return sorted(rows, key=lambda row: int(row["record_id"]))
 
 
 def _blind(row: dict[str, Any], numbers: Renumbered, kept: list[str], signals: list[str]) -> dict[str, Any]:
@@ -279,7 +279,7 @@ def _blind(row: dict[str, Any], numbers: Renumbered, kept: list[str], signals: l
 def _rounded(value: Any) -> Any:
     """Return a number with four digits; anything else as it is, of a list each."""
     if isinstance(value, list | tuple):
-        return [_rounded(one) for one in value]
+        return [_rounded(element) for element in value]
     return float(f"{value:.{DIGITS}g}") if isinstance(value, float) else value
 
 
@@ -335,10 +335,10 @@ def commit_benchmark(folder: str | Path, labels: str | Path | None = None) -> st
         If the labels are of another benchmark, or others were committed to.
     """
     benchmark = open_benchmark(folder)
-    found = labels_of(benchmark, Path(labels) if labels else None).commitment
-    content = {"sha256": found, "digest": benchmark.digest, "of": REVEALED}
+    commitment = labels_of(benchmark, Path(labels) if labels else None).commitment
+    content = {"sha256": commitment, "digest": benchmark.digest, "of": REVEALED}
     write_file(benchmark.path / COMMITMENT, json_text(content))
-    return found
+    return commitment
 
 
 def reveal_benchmark(folder: str | Path, labels: str | Path | None = None) -> Path:
@@ -352,9 +352,9 @@ def reveal_benchmark(folder: str | Path, labels: str | Path | None = None) -> Pa
     benchmark = open_benchmark(folder)
     if benchmark.commitment() is None:
         raise UsageError(f"{benchmark.path}: nothing was committed to; call `diagnostics.commit_benchmark` first")
-    found, target = labels_of(benchmark, Path(labels) if labels else None), benchmark.path / REVEALED
-    if not target.exists() or not target.samefile(found.file):
-        write_file(target, found.file.read_bytes())
+    sealed, target = labels_of(benchmark, Path(labels) if labels else None), benchmark.path / REVEALED
+    if not target.exists() or not target.samefile(sealed.file):
+        write_file(target, sealed.file.read_bytes())
     return target
 
 
@@ -409,13 +409,14 @@ def make_benchmark(
     """
     if tier not in TIERS:
         raise UsageError(f"tier: received {tier!r}; allowed are {', '.join(TIERS)}")
-    out, own = Path(folder), Path(facts) if facts else None
+    out, publication = Path(folder), Path(facts) if facts else None
     hidden = Path(secret) if secret else beside(out, SECRET)
-    learn = siggen.load_config(config or LEARNT, [*overrides, f"specimens={TIERS[tier].learn}"])
+    size = TIERS[tier]
+    learn = siggen.load_config(config or LEARNT, [*overrides, f"specimens={size.learn}"])
     if config is None:
         sys.stderr.write(f"{cost_sentence(learn)}\n")
     return write_benchmark(
-        out, hidden, read_secret(hidden / SECRET_FILE), learn, tier, TIERS[tier].test, facts=own, workers=workers
+        out, hidden, read_secret(hidden / SECRET_FILE), learn, tier, size.test, facts=publication, workers=workers
     )
 
 
@@ -423,7 +424,7 @@ def cost_sentence(learn: Any) -> str:
     """Return what each tier costs with a configuration to learn from, in minutes of CPU."""
     parts, repeats = question_of(learn.canonical()).parts(CONDITIONS), learn.records_per_specimen // learn.state_count
     a_record_s, said = RECORD_S * (START_S + learn.duration_s), []
-    of_whole = [len(own.get("states", range(learn.state_count))) for name, own in parts.items() if not is_alone(name)]
+    of_whole = [len(part.get("states", range(learn.state_count))) for name, part in parts.items() if not is_alone(name)]
     for tier, size in TIERS.items():
         by_itself = size.test * (len(parts) - len(of_whole))
         others = repeats * (size.learn * learn.state_count + size.test * sum(of_whole))
@@ -504,17 +505,17 @@ def write_benchmark(
         "parts": parts,
     }
     write_file(hidden / SEALED, json.dumps(sealed, sort_keys=True, allow_nan=False) + "\n")
-    own = (out / LEARN / CARD).read_text(encoding="utf-8")
-    write_file(out / CARD, benchmark_card(told, learn, own, question))
+    card = (out / LEARN / CARD).read_text(encoding="utf-8")
+    write_file(out / CARD, benchmark_card(told, learn, card, question))
     write_file(out / FACTS, json_text(told))
     return open_benchmark(out)
 
 
 def _test_config(learn: Any, name: str, changes: Mapping[str, Any], gearboxes: int, secret: bytes) -> Any:
     """Return the configuration of a test part; its seed follows from the secret."""
-    own = changed(learn.canonical(), changes)
-    own |= {"name": f"{learn.name}_{name}", "seed": seed_of(secret, name), "specimens": gearboxes}
-    return siggen.load_config(own)
+    config = changed(learn.canonical(), changes)
+    config |= {"name": f"{learn.name}_{name}", "seed": seed_of(secret, name), "specimens": gearboxes}
+    return siggen.load_config(config)
 
 
 def _write_learn(config: Any, folder: Path, hidden: Path, facts: Path | None, workers: int | None) -> None:
@@ -548,23 +549,23 @@ def _chosen(
     """
     rows = [
         {
-            "record_id": one.record_id,
-            "specimen_id": one.specimen_id,
-            "state_id": one.state_id,
-            **dict(zip(("state", "fault"), states[one.state_id], strict=True)),
+            "record_id": record.record_id,
+            "specimen_id": record.specimen_id,
+            "state_id": record.state_id,
+            **dict(zip(("state", "fault"), states[record.state_id], strict=True)),
         }
-        for one in siggen.plan(config)
-        if one.state_id in states
+        for record in siggen.plan(config)
+        if record.state_id in states
     ]
     while True:
         published = question.shown(rows, secret, name)
-        found = siggen.simulate_records(config, sorted(published.state_id), workers)
-        if not found.failures:
+        simulated = siggen.simulate_records(config, sorted(published.state_id), workers)
+        if not simulated.failures:
             break
-        lost = {failure.record_id for failure in found.failures}
+        lost = {failure.record_id for failure in simulated.failures}
         rows = [row for row in rows if row["record_id"] not in lost]
-    signals = [channel.column for channel in found.channels]
-    return SimulatedPart(found.labels, found.damage, found.rows.to_batches(), signals), published
+    signals = [channel.column for channel in simulated.channels]
+    return SimulatedPart(simulated.labels, simulated.damage, simulated.rows.to_batches(), signals), published
 
 
 def _write_blind(
@@ -588,11 +589,11 @@ def _write_blind(
             raise DatasetError(f"{folder}: was made with another secret or configuration; name a new folder")
         return
     shutil.rmtree(folder, ignore_errors=True)  # what a call that was stopped had half written
-    learn, own = configs
+    learn, test = configs
     facts = {"benchmark": question.title, "part": folder.name}
     template = TEMPLATES / f"{question.words}_part.md"
     card = filled(template, title=question.title, part=folder.name, rows=rows, is_alone=is_alone)
-    siggen.write_recorded_set(learn, folder, rows, condition_fields(part.labels), facts, card, measured=own, life=life)
+    siggen.write_recorded_set(learn, folder, rows, condition_fields(part.labels), facts, card, measured=test, life=life)
 
 
 def _holds(published: Dataset, row: Mapping[str, Any], column: str) -> bool:

@@ -102,7 +102,7 @@ def derived(secret: bytes, *words: object) -> bytes:
 
 def shuffled(secret: bytes, what: str, ids: Iterable[int]) -> list[int]:
     """Return ids in an order that only the secret tells."""
-    return sorted(ids, key=lambda one: derived(secret, what, one))
+    return sorted(ids, key=lambda number: derived(secret, what, number))
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,7 +186,7 @@ def damage_records(rows: list[dict[str, Any]], secret: bytes, name: str) -> Publ
         return PublishedRecords(dict.fromkeys(chosen, 1), frozenset(), chosen)
     every = frozenset(row["record_id"] for row in rows)
     told = frozenset(_references(rows, secret, name))
-    return PublishedRecords({one: int(one not in told) for one in every}, told, every - told)
+    return PublishedRecords({record: int(record not in told) for record in every}, told, every - told)
 
 
 def _one_of_each(rows: list[dict[str, Any]], secret: bytes, name: str) -> Iterator[int]:
@@ -196,12 +196,12 @@ def _one_of_each(rows: list[dict[str, Any]], secret: bytes, name: str) -> Iterat
     for row in rows:
         sides[row["fault"] != HEALTHY].setdefault(row["state_id"], []).append(row["state"])
         known.setdefault((row["specimen_id"], row["state"]), []).append(row["record_id"])
-    states = [[side[one][0] for one in shuffled(secret, f"states/{name}", side)] for side in sides]
+    states = [[side[state][0] for state in shuffled(secret, f"states/{name}", side)] for side in sides]
     for place, gearbox in enumerate(shuffled(secret, f"shown/{name}", {row["specimen_id"] for row in rows})):
-        own = states[place % 2] or states[1 - place % 2]
-        first = place // 2 % len(own)
-        tried = (*own[first:], *own[:first], *states[1 - place % 2])  # of those that a gearbox lost the next
-        held = next(known[gearbox, one] for one in tried if (gearbox, one) in known)
+        wanted = states[place % 2] or states[1 - place % 2]
+        first = place // 2 % len(wanted)
+        tried = (*wanted[first:], *wanted[:first], *states[1 - place % 2])  # of those that a gearbox lost the next
+        held = next(known[gearbox, state] for state in tried if (gearbox, state) in known)
         yield shuffled(secret, f"records of {gearbox}/{name}", held)[0]
 
 
@@ -211,7 +211,7 @@ def _references(rows: list[dict[str, Any]], secret: bytes, name: str) -> Iterato
     for row in rows:
         if row["fault"] == HEALTHY and not row.get(SHAM, False):
             healthy.setdefault((row["specimen_id"], row["operating_point_id"]), []).append(row["record_id"])
-    yield from (shuffled(secret, f"references/{name}", own)[0] for own in healthy.values() if len(own) > 1)
+    yield from (shuffled(secret, f"references/{name}", records)[0] for records in healthy.values() if len(records) > 1)
 
 
 DAMAGE_QUESTION = Question(
@@ -237,7 +237,7 @@ def life_records(rows: list[dict[str, Any]], secret: bytes, name: str) -> Publis
     numbers: dict[int, set[int]] = {}
     for row in rows:
         numbers.setdefault(row["specimen_id"], set()).add(row["state_id"])
-    last = {gearbox: _drawn(sorted(own), secret, name, gearbox) for gearbox, own in numbers.items()}
+    last = {gearbox: _drawn(sorted(inspections), secret, name, gearbox) for gearbox, inspections in numbers.items()}
     state_id = {row["record_id"]: row["state_id"] for row in rows if row["state_id"] <= last[row["specimen_id"]]}
     asked = (row["record_id"] for row in rows if row["state_id"] == last[row["specimen_id"]])
     return PublishedRecords(state_id, frozenset(), frozenset(asked))

@@ -61,21 +61,21 @@ def audit(
     from siggen.dataset.reading import open as open_set
     from siggen.errors import VerificationError
 
-    own = load_indicators(indicator)
+    own_indicators = load_indicators(indicator)
     dataset = open_set(directory)
     refuse_lives(dataset)
-    found = audit_set(dataset, seed, reference, own, terminal_stage)
+    audited = audit_set(dataset, seed, reference, own_indicators, terminal_stage)
     with terminal_stage("page", 1):
-        page = write_audit(found, dataset, out or beside(dataset.path, "_audit"))
+        page = write_audit(audited, dataset, out or beside(dataset.path, "_audit"))
     if as_json:
         echo_json(json.loads((page.parent / "audit.json").read_text(encoding="utf-8")))
     else:
-        for sentence in (*audit_summary(found), *(f"- {finding.line()}" for finding in found.findings)):
+        for sentence in (*audit_summary(audited), *(f"- {finding.line()}" for finding in audited.findings)):
             echo(sentence)
-    for note in found.notes:
+    for note in audited.notes:
         echo(f"note: {note}", err=True)
     echo(str(page), err=as_json)
-    if strict and found.findings:
-        raise VerificationError(f"{directory}: {counted(len(found.findings), 'trap')} found (--strict)")
-    if strict and found.tells_too_little:
-        raise VerificationError(f"{directory}: not passed (--strict). {found.verdict}")
+    if strict and audited.findings:
+        raise VerificationError(f"{directory}: {counted(len(audited.findings), 'trap')} found (--strict)")
+    if strict and audited.tells_too_little:
+        raise VerificationError(f"{directory}: not passed (--strict). {audited.verdict}")

@@ -117,23 +117,23 @@ def calibrate(
         advance()
     family, seed = family_size(draws.gearboxes, len(names), len(described.forces)), draws.seed
     with terminal_stage("gearboxes", draws.gearboxes) as advance:
-        found = calibrated(described, blocks, read.file.torque_nm, draws.gearboxes, family, seed, advance)
-    write_calibration(found, out)
+        calibration = calibrated(described, blocks, read.file.torque_nm, draws.gearboxes, family, seed, advance)
+    write_calibration(calibration, out)
     for block in (*blocks.blocks, *(judges.blocks if judges else ())):
         echo(f"{block.name}: {block.speed_hz:.4f} Hz ({block.origin})", err=True)
     siggen.load_config(out)  # what would be refused is said now
-    _tell(found)
+    _tell(calibration)
     echo(str(out))
     if use.inject is not None:
         with terminal_stage("injected gearboxes", INJECTED * len(blocks.blocks)) as advance:
             echo(str(write_injected(blocks, out, INJECTED, use.inject, seed, advance)))
     compared = min(MOST_COMPARED, draws.gearboxes)
     with terminal_stage("records to compare", 2 * compared) as advance:
-        written, sentences = calibration_page(found, out, judges, (compared, seed), advance)
+        written, sentences = calibration_page(calibration, out, judges, (compared, seed), advance)
     echo("\n".join([*sentences[:2], str(written)]))
 
 
-def _tell(found: Calibration) -> None:
+def _tell(calibration: Calibration) -> None:
     """Say what was fitted, and to stderr what was not identified."""
     import numpy as np
 
@@ -141,19 +141,19 @@ def _tell(found: Calibration) -> None:
     from diagnostics.calibration.healthy_blocks import FEWEST_RECORDINGS
     from diagnostics.calibration.path_draws import housing_mass_kg, path_level_doubt
 
-    for fit in found.channels:
+    for fit in calibration.channels:
         noise, depths = fit.noise, [depth.value for depth in fit.noise.depths]
         echo(
             f"{fit.name}: noise {noise.level_db.value:.1f} dB re 1 (m/s2)^2, shaft depths {depths[0]:.2f} and "
             f"{depths[1]:.2f}, {len(fit.own)} lines beside the mesh, {len(fit.paths)} paths"
         )
-    if len(found.blocks.blocks) < FEWEST_RECORDINGS:
-        echo(f"recordings: {len(found.blocks.blocks)}; {TOO_FEW}", err=True)
-    if found.stage is not None or not found.rig.shows_other_stages:
-        echo(CALIBRATED.stage(found))
-    for text in not_identified(found):
+    if len(calibration.blocks.blocks) < FEWEST_RECORDINGS:
+        echo(f"recordings: {len(calibration.blocks.blocks)}; {TOO_FEW}", err=True)
+    if calibration.stage is not None or not calibration.rig.shows_other_stages:
+        echo(CALIBRATED.stage(calibration))
+    for text in not_identified(calibration):
         echo(f"not identified: {text}", err=True)
-    paths = np.array([draw.accelerance for channel in found.channels for draw in channel.paths])
-    mass_kg = housing_mass_kg(found.rig.config)
-    if mass_kg is not None and (doubt := path_level_doubt(mass_kg, found.grid_hz, paths)):
+    paths = np.array([draw.accelerance for channel in calibration.channels for draw in channel.paths])
+    mass_kg = housing_mass_kg(calibration.rig.config)
+    if mass_kg is not None and (doubt := path_level_doubt(mass_kg, calibration.grid_hz, paths)):
         echo(doubt, err=True)

@@ -68,35 +68,35 @@ def check(
             f"{rig}: unit: received {read.unit}; the references of {machine} state none, so levels cannot be compared. "
             "Leave it out, or make the machine again with it"
         )
-    found, unread = [], {}
+    results, unread = [], {}
     with terminal_stage("recordings", len(sources)) as advance:
         for path, row in sources:
             facts = replace(read, row=row)
             name = path.name if row is None else f"{path.name}:{row}"
             try:
-                found.append(check_recording(known, read_recording(path, known.channels, facts), name, load))
+                results.append(check_recording(known, read_recording(path, known.channels, facts), name, load))
             except UsageError as error:
                 unread[name] = _in_words_of_check(str(error), machine)
             advance()
-    if unread and not found:
+    if unread and not results:
         raise UsageError("\n".join(unread.values()))
-    history = with_checks(past_checks(machine), found)
+    history = with_checks(past_checks(machine), results)
     if as_json:
-        echo_json({"machine": str(machine), "checks": [asdict(one) for one in found], "refused": unread})
+        echo_json({"machine": str(machine), "checks": [asdict(result) for result in results], "refused": unread})
     else:
-        for one in found:
-            echo(f"{one.recording}: {one.verdict}: {one.reason}{one.turning}")
+        for result in results:
+            echo(f"{result.recording}: {result.verdict}: {result.reason}{result.turning}")
         for name, reason in unread.items():
             echo(f"{name}: {CANNOT_TELL}: {reason}")
-    used = [one.used for one in found if one.score is not None]
+    used = [result.used for result in results if result.score is not None]
     if used:
         echo(rate_sentence(min(used), known.false_alarms), err=True)
     for note in [*(f"doubtful: {doubt}" for doubt in known.doubts), *([load_note] if load_note else [])]:
         echo(note, err=True)
-    page = write_machine_page(known, machine, found, history)
+    page = write_machine_page(known, machine, results, history)
     write_history(machine, history)  # last: a call that fails and is given again is in it once
     echo(str(page), err=as_json)
-    if any(one.verdict == CHANGED for one in found):
+    if any(result.verdict == CHANGED for result in results):
         raise typer.Exit(EXIT_MISMATCH)
     if unread:
         raise typer.Exit(EXIT_USAGE)

@@ -52,8 +52,8 @@ def of_machine(folder: Path, said: Sequence[str], stage: Stage) -> list[ShownRec
         known.references, REFERENCE
     )
     facts = replace(known.facts, columns=known.facts.columns or {name: name for name in known.channels})
-    found = _read(said, known.train, facts, known.speed_range_hz, stage)
-    return [_shown(one, verdicts.get(one.name, UNKNOWN), loads.get(one.name)) for one in found]
+    recordings = _read(said, known.train, facts, known.speed_range_hz, stage)
+    return [_shown(one, verdicts.get(one.name, UNKNOWN), loads.get(one.name)) for one in recordings]
 
 
 def of_files(
@@ -66,13 +66,13 @@ def of_files(
     """Return recordings that the user describes."""
     from diagnostics.explore.measured_page import UNKNOWN
 
-    return [_shown(one, UNKNOWN, None) for one in _read(said, train, facts, speed_range_hz, stage)]
+    return [_shown(recording, UNKNOWN, None) for recording in _read(said, train, facts, speed_range_hz, stage)]
 
 
-def _shown(found: RecordingIndicators, verdict: str, load: float | None) -> ShownRecording:
+def _shown(recording: RecordingIndicators, verdict: str, load: float | None) -> ShownRecording:
     from diagnostics.explore.measured_page import ShownRecording
 
-    return ShownRecording(found, verdict, float("nan") if load is None else load)
+    return ShownRecording(recording, verdict, float("nan") if load is None else load)
 
 
 def _read(
@@ -85,15 +85,15 @@ def _read(
     from diagnostics.machine.recording_indicators import recording_indicators
 
     sources = recordings_of(said)
-    found: list[RecordingIndicators] = []
+    recordings: list[RecordingIndicators] = []
     with stage("indicators of recordings", len(sources)) as advance:
         for path, row in sources:
             said_of = replace(facts, row=row)
-            one = recording_indicators(path, train, said_of, speed_range_hz)
-            echo(f"{one.name}: {one.pulses.speed_hz:.4f} Hz ({one.pulses.origin})", err=True)
-            found.append(one)
+            recording = recording_indicators(path, train, said_of, speed_range_hz)
+            echo(f"{recording.name}: {recording.pulses.speed_hz:.4f} Hz ({recording.pulses.origin})", err=True)
+            recordings.append(recording)
             advance()
-    return found
+    return recordings
 
 
 @grouped

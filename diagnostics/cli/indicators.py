@@ -93,19 +93,19 @@ def _ranked_tables(
     from diagnostics.statistics.indicator_statistics import AssessmentSettings
     from siggen.dataset.reading import open as open_set
 
-    own, dataset = load_indicators(indicator), open_set(directory)
+    own_indicators, dataset = load_indicators(indicator), open_set(directory)
     refuse_lives(dataset)
     check_states(dataset)
     records = dataset.labels(columns=["record_id"]).num_rows
     with terminal_stage("indicators", records) as advance:
         settings = IndicatorSettings(speed_range_hz=span)
-        everything = record_table(dataset, settings, own, workers=fitting_workers(records), advance=advance)
+        everything = record_table(dataset, settings, own_indicators, workers=fitting_workers(records), advance=advance)
     table = ranking_table(everything, dataset, leave_out=True)
-    found = evaluated(table, AssessmentSettings(), terminal_stage)
-    path = write_evaluation(dataset, found, out or beside(dataset.path, "_indicators"), values=True)
+    ranking = evaluated(table, AssessmentSettings(), terminal_stage)
+    path = write_evaluation(dataset, ranking, out or beside(dataset.path, "_indicators"), values=True)
     for problem in problem_lines(table.problems):
         echo(f"left out: {problem}", err=True)
-    for sentence in findings(dataset, found)[1:]:
+    for sentence in findings(dataset, ranking)[1:]:
         echo(sentence)
     echo(str(path))
 
@@ -119,11 +119,11 @@ def _table_alone(directory: Path, out: Path, indicator: OwnIndicators) -> None:
     from diagnostics.indicators.workers import fitting_workers
     from siggen.dataset.reading import open as open_set
 
-    own = load_indicators(indicator)
+    own_indicators = load_indicators(indicator)
     dataset = open_set(directory)
     records = dataset.labels(columns=["record_id"]).num_rows
     with terminal_stage("indicators", records) as advance:
-        table = record_table(dataset, own=own, workers=fitting_workers(records), advance=advance)
+        table = record_table(dataset, own=own_indicators, workers=fitting_workers(records), advance=advance)
     notes = check_table(table, dataset)
     write_table(classifier_table(table, notes), out)
     for note in notes:
@@ -149,21 +149,21 @@ def _of_recordings(
     read = recording.read(sources[0])
     train = gears.train(read, f"{targets[0]}: teeth unknown")
     facts, speed_range_hz = read.facts(), read.speed_range_hz()
-    found = []
+    results = []
     with terminal_stage("recordings", len(sources)) as advance:
         for path, row in sources:
             said = replace(facts, row=row)
-            found.append(recording_indicators(path, train, said, speed_range_hz))
+            results.append(recording_indicators(path, train, said, speed_range_hz))
             advance()
     if as_json:
-        echo_json({"recordings": recording_rows(found)})
-    for one in found:
-        levels = ", ".join(f"{name} {one.values[f'rms__{name}']:.3g} m/s2" for name in one.recording.channels)
-        shaft = gear_names(one.train)[0].gears[0]
-        speed = f"{shaft} {one.pulses.speed_hz:.4f} Hz, mesh {one.mesh_hz:.2f} Hz"
+        echo_json({"recordings": recording_rows(results)})
+    for result in results:
+        levels = ", ".join(f"{name} {result.values[f'rms__{name}']:.3g} m/s2" for name in result.recording.channels)
+        shaft = gear_names(result.train)[0].gears[0]
+        speed = f"{shaft} {result.pulses.speed_hz:.4f} Hz, mesh {result.mesh_hz:.2f} Hz"
         if not as_json:
-            echo(f"{one.name}: {speed} ({one.pulses.origin}); rms {levels}")
-        for doubt in one.doubts:
+            echo(f"{result.name}: {speed} ({result.pulses.origin}); rms {levels}")
+        for doubt in result.doubts:
             echo(f"doubtful: {doubt}", err=True)
     folder = out or sources[0][0].resolve().with_name(f"{sources[0][0].stem}_indicators")
-    echo(str(write_recordings(found, folder)), err=as_json)
+    echo(str(write_recordings(results, folder)), err=as_json)

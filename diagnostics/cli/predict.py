@@ -86,38 +86,38 @@ def predict(
         for said in healthy.reference or ()
         for path, number in file_rows(said)
     )
-    found, refused = {}, {}
+    predictions, refused = {}, {}
     with terminal_stage("prediction", len(sources)) as advance:
         for name, (path, row) in zip(_names(sources), sources, strict=True):
             try:
                 read = read_recording(path, names, replace(facts, row=row), units)
-                found[name] = predict_recording(loaded, read, pair, reading.speed_range_hz(), references)
+                predictions[name] = predict_recording(loaded, read, pair, reading.speed_range_hz(), references)
             except UsageError as error:
                 refused[name] = str(error)
             advance()
-    if refused and not found:
+    if refused and not predictions:
         raise UsageError("\n".join(refused.values()))
     if as_json:
-        told = [prediction_facts(one, loaded.facts) for one in found.values()]
+        told = [prediction_facts(prediction, loaded.facts) for prediction in predictions.values()]
         echo_json({"predictions": told, "refused": refused})
     else:
-        _tell(found, refused)
+        _tell(predictions, refused)
     if out is not None:
         folders = dict(zip(_names(sources), _folders(sources), strict=True))
-        for name, one in found.items():
+        for name, prediction in predictions.items():
             place = out / folders[name] if len(sources) > 1 else out
-            echo(str(write_prediction(one, loaded.facts, place)), err=as_json)
+            echo(str(write_prediction(prediction, loaded.facts, place)), err=as_json)
     if refused:
         raise typer.Exit(EXIT_USAGE)
 
 
-def _tell(found: Mapping[str, Prediction], refused: Mapping[str, str]) -> None:
+def _tell(predictions: Mapping[str, Prediction], refused: Mapping[str, str]) -> None:
     """Print what was found of every recording, first in one line."""
     from diagnostics.prediction.prediction_page import MEANING, prediction_headline, prediction_rows
 
-    for name, one in found.items():
-        echo(f"{name}: {prediction_headline(one)}")
-        for label, text in prediction_rows(one):
+    for name, prediction in predictions.items():
+        echo(f"{name}: {prediction_headline(prediction)}")
+        for label, text in prediction_rows(prediction):
             echo(f"  {label + ':':21} {text}")
     for name, reason in refused.items():
         echo(f"{name}: cannot tell: {reason}")

@@ -78,9 +78,9 @@ class SaidReading:
         """Return how the files are read, with other columns than those that were named where such are given."""
         from diagnostics.recordings.taken import RecordingFacts
 
-        found = self.file.over(RecordingFacts(tacho_by_name=not (self.speed or self.file.speed)))
-        fs_hz = found.fs_hz if self.fs_hz is None else self.fs_hz
-        return replace(found, fs_hz=fs_hz, columns=found.columns if columns is None else columns)
+        facts = self.file.over(RecordingFacts(tacho_by_name=not (self.speed or self.file.speed)))
+        fs_hz = facts.fs_hz if self.fs_hz is None else self.fs_hz
+        return replace(facts, fs_hz=fs_hz, columns=facts.columns if columns is None else columns)
 
     def speed_range_hz(self) -> tuple[float, float] | None:
         """Return where the speed of the first shaft is searched.
@@ -181,13 +181,13 @@ def recordings_of(said: Sequence[str]) -> list[Source]:
     UsageError
         If none of them is a file: what is missing else, such as teeth, is asked for in vain then.
     """
-    found = [source for one in said for source in file_rows(one)]
-    if not any(path.is_file() for path, _ in found):
-        first = found[0][0]
+    sources = [source for name in said for source in file_rows(name)]
+    if not any(path.is_file() for path, _ in sources):
+        first = sources[0][0]
         raise UsageError(
             f"{first}: {'is a folder; give the file of one recording' if first.is_dir() else 'no such file'}"
         )
-    return found
+    return sources
 
 
 def is_recording(said: str) -> bool:

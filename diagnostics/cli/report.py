@@ -102,19 +102,19 @@ def report(
 
     if training.cnn and not missing_packages("torch"):
         check_device(training.device)
-    own = load_indicators(indicator)
+    own_indicators = load_indicators(indicator)
     classes = check_kind(training.classes, "--classes")
     dataset, second = open_sets(directory, training.test, training.channel or (), classes)
     folder = out or beside(dataset.path, "_report")
     if is_lives(dataset):
-        _refuse({"--test": second, "--indicator": own, "--predictions": training.predictions})
+        _refuse({"--test": second, "--indicator": own_indicators, "--predictions": training.predictions})
         path = write_life_report(dataset, folder, seed, terminal_stage, network=training.cnn)
     else:
         network = NetworkOptions(training.cnn, training.device, classes=classes)
         records = dataset.labels(columns=["record_id"]).num_rows
         page = PageOptions(predictions=training.predictions, workers=fitting_workers(records))
         path = write_report(
-            dataset, folder, seed, network=network, other=second, own=own, page=page, stage=terminal_stage
+            dataset, folder, seed, network=network, other=second, own=own_indicators, page=page, stage=terminal_stage
         )
     metrics = json.loads((path.parent / "metrics.json").read_text(encoding="utf-8"))
     if headline := metrics.get("headline"):

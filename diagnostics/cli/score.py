@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from diagnostics.cli.set_options import Seed
 from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
+
+if TYPE_CHECKING:
+    from diagnostics.scoring.benchmark_scores import BenchmarkScores
+    from diagnostics.scoring.score import Scores
 
 
 def score(
@@ -72,26 +76,20 @@ def score(
         raise UsageError(f"--labels: {directory} is no benchmark and has its own labels; leave --labels out")
     if sealed:
         benchmark = open_benchmark(directory)
-        parts = {file: score_benchmark(benchmark, file, labels=labels, seed=seed) for file in predictions}
-        tables, numbers = [one.to_table() for one in parts.values()], [one.numbers() for one in parts.values()]
-        told = list(map(str, parts.values()))
+        results: dict[Path, BenchmarkScores | Scores] = {
+            file: score_benchmark(benchmark, file, labels=labels, seed=seed) for file in predictions
+        }
     else:
         dataset = open_set(directory)
-        found = [scored(dataset, file, split=split, seed=seed) for file in predictions]
-        tables, numbers, told = (
-            [one.to_table() for one in found],
-            [one.numbers() for one in found],
-            list(map(str, found)),
-        )
+        results = {file: scored(dataset, file, split=split, seed=seed) for file in predictions}
     if as_json:
-        echo_json({"split": split, "scores": [row for rows in numbers for row in rows]})
+        echo_json({"split": split, "scores": [row for result in results.values() for row in result.numbers()]})
     else:
-        for file, text in zip(predictions, told, strict=True):
-            echo(f"{file}\n{text}" if len(predictions) > 1 else text)
+        for file, result in results.items():
+            echo(f"{file}\n{result}" if len(results) > 1 else str(result))
     if out:
-        named = [
-            table.append_column("file", pa.array([str(file)] * table.num_rows)) if len(predictions) > 1 else table
-            for file, table in zip(predictions, tables, strict=True)
-        ]
-        write_table(pa.concat_tables(named), out)
+        tables = {str(file): result.to_table() for file, result in results.items()}
+        if len(tables) > 1:
+            tables = {file: one.append_column("file", pa.array([file] * one.num_rows)) for file, one in tables.items()}
+        write_table(pa.concat_tables(tables.values()), out)
         echo(str(out), err=as_json)

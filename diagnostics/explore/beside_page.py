@@ -130,12 +130,12 @@ def _labels(measured: PageSource, simulated: PageSource, first: int) -> dict[str
         "kind": [RECORDING] * ours,
     }
     other: dict[str, Any] = {**simulated.labels, "kind": [SIMULATED] * theirs, "name": [""] * theirs}
-    found = {}
+    labels = {}
     for name, values in other.items():
         both = np.empty(ours + theirs, dtype=object)
         both[:ours], both[ours:] = list(known.get(name, [None] * ours)), list(values)
-        found[name] = both
-    return found
+        labels[name] = both
+    return labels
 
 
 def nearest_of_the_others(labels: Mapping[str, np.ndarray], ours: int, theirs: int) -> list[int | None]:
@@ -224,4 +224,4 @@ def _missing(shown: Sequence[ShownRecording], measured: PageSource, simulated: P
     labels = {name: simulated.labels[name] for name in ("fault", "specimen_id")}
     damaged = bool((labels["fault"] != HEALTHY).any())
     of_the_set = missing_parts(labels, simulated.overlay, damaged, bool(simulated.quantities), named=True)
-    return [*taken, *missing_sentences(sum(one.healthy for one in shown)), *of_the_set]
+    return [*taken, *missing_sentences(sum(recording.healthy for recording in shown)), *of_the_set]

@@ -37,7 +37,7 @@ FILTERS = (("state", "Verdict"),)
 class ShownRecording:
     """A recording with its indicators; what was said of it; its load as the user gave it (NaN where he did not)."""
 
-    found: RecordingIndicators
+    indicators: RecordingIndicators
     verdict: str
     load: float
 
@@ -60,11 +60,11 @@ def recordings_source(shown: Sequence[ShownRecording]) -> PageSource:
     UsageError
         If rates or channels differ: charts and indicators could not be laid over each other.
     """
-    first = shown[0].found
-    for one in shown[1:]:
-        _check_alike(first, one.found)
-    names = tuple(dict.fromkeys(name for one in shown for name in one.found.values))
-    values = np.array([[one.found.values.get(name, np.nan) for name in names] for one in shown])
+    first = shown[0].indicators
+    for recording in shown[1:]:
+        _check_alike(first, recording.indicators)
+    names = tuple(dict.fromkeys(name for recording in shown for name in recording.indicators.values))
+    values = np.array([[recording.indicators.values.get(name, np.nan) for name in names] for recording in shown])
     return PageSource(
         labels=_labels(shown),
         overlay=nearest_healthy(shown),
@@ -72,7 +72,7 @@ def recordings_source(shown: Sequence[ShownRecording]) -> PageSource:
         records=lambda _numbers: _records(shown),
         channels=tuple(first.recording.channels),
         fs_hz=first.recording.fs_hz,
-        duration_s=max(one.found.recording.duration_s for one in shown),
+        duration_s=max(recording.indicators.recording.duration_s for recording in shown),
         indicators=packed_indicators(names, values, IndicatorSettings(), named=gear_names(first.train)),
         teeth=tuple(_teeth_labels(first).values()),
         measured=True,
@@ -98,40 +98,40 @@ def _labels(shown: Sequence[ShownRecording]) -> dict[str, np.ndarray]:
     count = len(shown)
     return {
         "record_id": np.arange(1, count + 1),
-        "name": np.array([one.found.name for one in shown]),
-        "state": np.array([one.verdict for one in shown]),
-        "fault": np.array([HEALTHY if one.healthy else "unknown" for one in shown]),
+        "name": np.array([recording.indicators.name for recording in shown]),
+        "state": np.array([recording.verdict for recording in shown]),
+        "fault": np.array([HEALTHY if recording.healthy else "unknown" for recording in shown]),
         "specimen_id": np.arange(count),  # an indicator's place is among the other recordings
         "operating_point_id": np.zeros(count, dtype=np.int64),
-        "speed_hz": np.array([one.found.pulses.speed_hz for one in shown]),
-        "torque_nm": np.array([one.load for one in shown]),
+        "speed_hz": np.array([recording.indicators.pulses.speed_hz for recording in shown]),
+        "torque_nm": np.array([recording.load for recording in shown]),
         "damaged_area_mm2": np.full(count, np.nan),
         **{
-            label: np.array([one.found.train.gear(gear).teeth for one in shown])
-            for gear, label in _teeth_labels(shown[0].found).items()
+            label: np.array([recording.indicators.train.gear(gear).teeth for recording in shown])
+            for gear, label in _teeth_labels(shown[0].indicators).items()
         },
     }
 
 
 def nearest_healthy(shown: Sequence[ShownRecording]) -> list[int | None]:
     """Return the row of the healthy recording nearest in speed to each, never its own; None where there is none."""
-    speeds = [one.found.pulses.speed_hz for one in shown]
-    rows = [k for k, one in enumerate(shown) if one.healthy]
+    speeds = [recording.indicators.pulses.speed_hz for recording in shown]
+    rows = [k for k, recording in enumerate(shown) if recording.healthy]
     return [
-        min((k for k in rows if k != own), key=lambda k: abs(speeds[k] - speed), default=None)
-        for own, speed in enumerate(speeds)
+        min((k for k in rows if k != row), key=lambda k: abs(speeds[k] - speed), default=None)
+        for row, speed in enumerate(speeds)
     ]
 
 
 def _records(shown: Sequence[ShownRecording]) -> Iterator[Recording]:
     for number, one in enumerate(shown, start=1):
-        measured, train = one.found.recording, one.found.train
-        yield Recording({"record_id": number}, measured.channels, one.found.pulses.times_s, measured.fs_hz, train)
+        measured, train = one.indicators.recording, one.indicators.train
+        yield Recording({"record_id": number}, measured.channels, one.indicators.pulses.times_s, measured.fs_hz, train)
 
 
-def _teeth_labels(one: RecordingIndicators) -> dict[str, str]:
+def _teeth_labels(recording: RecordingIndicators) -> dict[str, str]:
     """Return what the labels with teeth are called, as in a set, by the gears of the first mesh."""
-    return {gear: f"teeth_{in_column(gear)}" for gear in one.mesh.names.gears}
+    return {gear: f"teeth_{in_column(gear)}" for gear in recording.mesh.names.gears}
 
 
 def write_recordings_page(
@@ -157,7 +157,7 @@ def write_recordings_page(
     UsageError
         If the recordings differ in rate or channels.
     """
-    missing = missing_sentences(sum(one.healthy for one in shown))
+    missing = missing_sentences(sum(recording.healthy for recording in shown))
     look = look_of(recordings_source(shown), RecordList(COLUMNS, FILTERS, missing), stage, full=full)
     write_page(path, look_page(f"Recordings of {name}", look))
     return path

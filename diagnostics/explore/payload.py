@@ -215,14 +215,14 @@ def further_labels(dataset: Dataset, shown: Iterable[str]) -> dict[str, np.ndarr
     """Return the label columns of a set with one number or text a record, of which two differ, besides those shown."""
     table, known = dataset.labels(), set(shown)
     signals = {channel.column for channel in dataset.channels}
-    found = {}
+    further = {}
     for name, column in zip(table.column_names, table.columns, strict=True):
         if name in known | signals or pa.types.is_nested(column.type):
             continue
         differing = len(column.unique())
         if differing > 1 and (differing <= MOST_NAMES or not pa.types.is_string(column.type)):
-            found[name] = np.array([_plain(value) for value in column.to_pylist()], dtype=object)
-    return found
+            further[name] = np.array([_plain(value) for value in column.to_pylist()], dtype=object)
+    return further
 
 
 def _plain(value: Any) -> Any:
@@ -256,12 +256,12 @@ def extreme_points(signal: np.ndarray, buckets: int) -> Drawn:
     if samples <= 2 * buckets:
         return Drawn(np.arange(samples), np.asarray(signal))
     edges = np.linspace(0, samples, buckets + 1).astype(np.int64)
-    found = [
+    places = [
         low + place
         for low, high in pairwise(edges)
         for place in sorted((int(signal[low:high].argmin()), int(signal[low:high].argmax())))
     ]
-    sample = np.unique(found)  # a bucket that does not vary has one extreme
+    sample = np.unique(places)  # a bucket that does not vary has one extreme
     return Drawn(sample, np.asarray(signal)[sample])
 
 
@@ -302,13 +302,13 @@ class OrderAxis:
         revolutions : int
         """
         place = np.round(np.arange(amplitude.size) / (revolutions * self.step)).astype(np.int64)
-        found = np.full(self.points, -np.inf)
+        largest = np.full(self.points, -np.inf)
         inside = place < self.points
-        np.maximum.at(found, place[inside], amplitude[inside])
-        empty = np.flatnonzero(np.isneginf(found))
+        np.maximum.at(largest, place[inside], amplitude[inside])
+        empty = np.flatnonzero(np.isneginf(largest))
         nearest = np.round(empty * self.step * revolutions).astype(np.int64)
-        found[empty] = np.where(nearest < amplitude.size, amplitude[np.minimum(nearest, amplitude.size - 1)], np.nan)
-        return found
+        largest[empty] = np.where(nearest < amplitude.size, amplitude[np.minimum(nearest, amplitude.size - 1)], np.nan)
+        return largest
 
 
 def order_axis(highest_order: float, revolutions: int, points: int) -> OrderAxis:
@@ -367,11 +367,11 @@ def _channel(
 ) -> dict[str, Any]:
     finite = np.isfinite(signal)
     clean = np.where(finite, signal, 0.0)
-    found: dict[str, Any] = {
+    views: dict[str, Any] = {
         "wave": packed_wave(clean, axes.detail, _fine(record, axes.detail, clean.size)),
         "undefined": int(signal.size - np.count_nonzero(finite)),
     }
-    return found if grid is None else found | _of_angle(clean, record, grid, axes, start_rad)
+    return views if grid is None else views | _of_angle(clean, record, grid, axes, start_rad)
 
 
 def packed_wave(signal: np.ndarray, detail: Detail, fine: tuple[int, int]) -> dict[str, Any]:
@@ -416,9 +416,9 @@ def _of_members(signal: np.ndarray, record: Recording, steps_per_tooth: int) -> 
         return []
     settings = IndicatorSettings()
     (set_of_planets,) = mesh_signals({"": signal}, np.asarray(record.tacho_s), record.fs_hz, train, settings)
-    own = set_of_planets.channels[""]
+    channel = set_of_planets.channels[""]
     return [
-        _packed_average(own.shaft(shaft.name).average, shaft.teeth, shaft.revolutions, steps_per_tooth, None)
+        _packed_average(channel.shaft(shaft.name).average, shaft.teeth, shaft.revolutions, steps_per_tooth, None)
         if shaft.revolutions
         else None
         for shaft in set_of_planets.shafts
@@ -622,9 +622,9 @@ def packed_indicators(
     named: GearNames = PAIR,
 ) -> list[dict[str, Any]]:
     """Return name, title, definition and packed values (records, names) of every indicator that some record defines."""
-    units = {RECORDED.unit, *(one.unit for one in held.values())}
+    units = {RECORDED.unit, *(quantity.unit for quantity in held.values())}
     titles = {unit: indicator_titles(settings, unit, named) for unit in units}
-    definitions, found = indicator_definitions(settings, named), []
+    definitions, packed = indicator_definitions(settings, named), []
     for name, column in zip(names, values.T, strict=True):
         base, _, channel = name.rpartition("__") if name not in own else (name, "", "")
         if np.isfinite(column).any():
@@ -632,5 +632,5 @@ def packed_indicators(
                 "title": titles[held.get(channel, RECORDED).unit].get(base, name),
                 "definition": definitions.get(base, "your own indicator"),
             }
-            found.append({"name": name, "channel": channel, **facts, **packed_column(column)})
-    return found
+            packed.append({"name": name, "channel": channel, **facts, **packed_column(column)})
+    return packed

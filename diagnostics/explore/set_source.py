@@ -69,9 +69,9 @@ def chosen_records(labels: Mapping[str, np.ndarray], limit: int, first: Sequence
     left = limit - sum(size[number] for number in kept)
     for wanted in range(rest.size, -1, -1):
         place = np.unique(np.linspace(0, rest.size - 1, wanted).round().astype(np.int64))
-        found = [*kept, *rest[place].tolist()]
-        if found and sum(size[number] for number in rest[place].tolist()) <= left:
-            return np.flatnonzero(np.isin(labels["specimen_id"], found))
+        chosen = [*kept, *rest[place].tolist()]
+        if chosen and sum(size[number] for number in rest[place].tolist()) <= left:
+            return np.flatnonzero(np.isin(labels["specimen_id"], chosen))
     rows = np.flatnonzero(labels["specimen_id"] == specimens[0])
     return np.asarray(rows[np.unique(np.linspace(0, rows.size - 1, limit).round().astype(np.int64))])
 
@@ -88,15 +88,15 @@ def overlaid_records(labels: Mapping[str, np.ndarray]) -> list[int | None]:
     Same gearbox and operating point; the same repeat if there is one, for a healthy record another repeat.
     """
     healthy = labels["fault"] == HEALTHY
-    found: list[int | None] = []
+    overlaid: list[int | None] = []
     for row in range(healthy.size):
         same = healthy & (labels["specimen_id"] == labels["specimen_id"][row])
         same &= labels["operating_point_id"] == labels["operating_point_id"][row]
         same[row] = False
         rows = np.flatnonzero(same)
         nearest = rows[np.argsort(labels["repeat"][rows] != labels["repeat"][row], kind="stable")]
-        found.append(int(nearest[0]) if nearest.size else None)
-    return found
+        overlaid.append(int(nearest[0]) if nearest.size else None)
+    return overlaid
 
 
 ELLIPSE_CORNERS = 48
@@ -195,8 +195,8 @@ def _records(dataset: Dataset, numbers: np.ndarray, records: int) -> Iterator[Re
 
 def chosen_labels(dataset: Dataset) -> dict[str, np.ndarray]:
     """Return the labels that the page needs, (records,) each; those that the set lacks are left out."""
-    found = dataset.labels()
-    columns = dict(zip(found.column_names, found.columns, strict=True))
+    table = dataset.labels()
+    columns = dict(zip(table.column_names, table.columns, strict=True))
     teeth = dict.fromkeys([*pair_teeth(dataset), *dataset.columns_of("teeth").values()])
     present = [name for name in (*SHOWN, *teeth) if name in columns]
     return {name: np.asarray(columns[name].to_pylist()) for name in present}
@@ -233,18 +233,18 @@ def internal_waves(
     fine : list of (int, int)
         Stretch of every record that is kept whole, as of its signals.
     """
-    found: list[dict[str, Any]] = [{} for _ in ids]
+    packed: list[dict[str, Any]] = [{} for _ in ids]
     names, waves = [quantity["name"] for quantity in shown_internals(dataset)], _waves(dataset)
     place = {int(record): row for row, record in enumerate(ids)}
     if not names:
-        return found
+        return packed
     for batch in dataset.internals(columns=["record_id", *names], batch_rows=16):
         for line, record in enumerate(batch.column("record_id").to_pylist()):
             row = place.get(record)
             if row is not None:
                 series = {name: waves[name][2] * np.asarray(batch.column(name)[line].values) for name in names}
-                found[row] = {name: packed_wave(values, detail, fine[row]) for name, values in series.items()}
-    return found
+                packed[row] = {name: packed_wave(values, detail, fine[row]) for name, values in series.items()}
+    return packed
 
 
 def _damage(table: pa.Table | None, ids: np.ndarray) -> dict[int, list[dict[str, Any]]]:
@@ -255,4 +255,4 @@ def _damage(table: pa.Table | None, ids: np.ndarray) -> dict[int, list[dict[str,
     by_record: dict[int, list[dict[str, Any]]] = {}
     for row in kept:
         by_record.setdefault(row["record_id"], []).append(row)
-    return {record: outlines(found) for record, found in by_record.items()}
+    return {record: outlines(rows) for record, rows in by_record.items()}

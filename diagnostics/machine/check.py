@@ -78,13 +78,13 @@ def past_checks(folder: Path) -> list[PastCheck]:
     file = folder / CHECKS
     if not file.exists():
         return []
-    found = []
+    history = []
     for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), start=1):
         try:
-            found.append(PastCheck(**json.loads(line)))
+            history.append(PastCheck(**json.loads(line)))
         except (TypeError, ValueError) as error:
             raise UsageError(f"{file}: line {number} is damaged ({error}); delete that line") from None
-    return found
+    return history
 
 
 @dataclass(frozen=True, slots=True)
@@ -249,13 +249,13 @@ def _other_level(level_db: float) -> str:
 
 
 def _moved(machine: Machine, logs: np.ndarray, score: ChangeScore) -> tuple[MovedIndicator, ...]:
-    found = []
+    moved = []
     for k in np.argsort(-np.nan_to_num(np.abs(score.deviation)))[:LISTED]:
         indicator, _, channel = machine.names[k].partition("__")
         factor = float(np.exp(logs[k] - score.mean[k]))
         title = column_title(indicator, gear_names(machine.train))
-        found.append(MovedIndicator(indicator, channel, factor, float(score.deviation[k]), title))
-    return tuple(found)
+        moved.append(MovedIndicator(indicator, channel, factor, float(score.deviation[k]), title))
+    return tuple(moved)
 
 
 def _reason(score: ChangeScore, moved: tuple[MovedIndicator, ...], used: int) -> str:

@@ -62,12 +62,12 @@ def third_octave_levels(recording: MeasuredRecording, most_hz: float, seconds: f
     power = 2.0 * np.abs(np.fft.rfft(centred * weights)) ** 2 / (signals.shape[1] * (weights**2).sum())
     frequency_hz = np.fft.rfftfreq(signals.shape[1], 1.0 / recording.fs_hz)
     edges_hz = LOWEST_HZ * 2.0 ** (np.arange(1 + int(3.0 * np.log2(most_hz / LOWEST_HZ))) / 3.0)
-    found = np.full((len(signals), edges_hz.size - 1), np.nan)
+    levels = np.full((len(signals), edges_hz.size - 1), np.nan)
     for k, (low, high) in enumerate(pairwise(edges_hz)):
         inside = (frequency_hz >= low) & (frequency_hz < high)
         if np.count_nonzero(inside) >= FEWEST_BINS:
-            found[:, k] = 10.0 * np.log10(power[:, inside].sum(axis=1) + SILENCE)
-    return found
+            levels[:, k] = 10.0 * np.log10(power[:, inside].sum(axis=1) + SILENCE)
+    return levels
 
 
 def odd_references(levels: np.ndarray, speed_hz: np.ndarray, channels: Sequence[str]) -> tuple[OddReference, ...]:
@@ -94,13 +94,13 @@ def odd_references(levels: np.ndarray, speed_hz: np.ndarray, channels: Sequence[
 
 def odd_sentences(odd: Sequence[OddReference], references: Sequence[str]) -> list[str]:
     """Return one sentence per odd reference, and how many more there are."""
-    found = [
+    sentences = [
         f"reference {one.index + 1} of {len(references)}, {references[one.index]}, is unlike the others: third octaves "
         f"of {one.channel} are {one.distance_db:.0f} dB off the nearest one. Is it of this machine, sensor place, unit "
         "and load? If not, leave it out of `baseline`."
         for one in odd[:LISTED]
     ]
-    return found + ([f"{len(odd) - LISTED} more references are unlike the others."] if len(odd) > LISTED else [])
+    return sentences + ([f"{len(odd) - LISTED} more references are unlike the others."] if len(odd) > LISTED else [])
 
 
 def _outside(linked: np.ndarray) -> np.ndarray:

@@ -86,8 +86,8 @@ def _tone(verdicts: set[str]) -> str:
 
 def _moved_table(check: Check) -> TableBlock:
     rows = [
-        (Cell(one.title, one.indicator), one.channel, cell(one.factor, ".3g"), cell(one.spreads, "+.1f"))
-        for one in check.moved
+        (Cell(moved.title, moved.indicator), moved.channel, cell(moved.factor, ".3g"), cell(moved.spreads, "+.1f"))
+        for moved in check.moved
     ]
     return table(("Indicator", "Channel", "Factor", "Spreads"), rows, MACHINE_WORDS.moved(check), sortable=True)
 

@@ -42,66 +42,66 @@ OVER_NOISE = 10.0
 """Power of a line's largest bin over that of the noise beside it; noise alone reaches it in 1 of 20,000 bins."""
 
 
-def write_recordings(found: Sequence[RecordingIndicators], folder: Path) -> Path:
+def write_recordings(results: Sequence[RecordingIndicators], folder: Path) -> Path:
     """Write `indicators.csv`, one row per recording and channel, and `indicators.html`; return the page's path."""
     import pyarrow as pa
 
-    rows = recording_rows(found)
+    rows = recording_rows(results)
     columns = list(dict.fromkeys(name for row in rows for name in row))
     siggen.write_csv(pa.table({name: [row.get(name) for row in rows] for name in columns}), folder / TABLE)
-    parts: list[Block] = [Heading("Indicators of recordings", 1), _overview(found)]
-    for one in found:
-        parts += _section(one)
+    parts: list[Block] = [Heading("Indicators of recordings", 1), _overview(results)]
+    for result in results:
+        parts += _section(result)
     page = folder / PAGE
     write_page(page, Page("Indicators of recordings", parts))
     return page
 
 
-def recording_rows(found: Sequence[RecordingIndicators]) -> list[dict[str, Any]]:
+def recording_rows(results: Sequence[RecordingIndicators]) -> list[dict[str, Any]]:
     """Return one row per recording and channel: speed and every indicator, None where it is undefined."""
-    return [_row(one, channel) for one in found for channel in one.recording.channels]
+    return [_row(result, channel) for result in results for channel in result.recording.channels]
 
 
-def _row(found: RecordingIndicators, channel: str) -> dict[str, Any]:
-    values = {name: None if np.isnan(value) else value for name, value in found.channel(channel).items()}
-    known = {"speed_hz": found.pulses.speed_hz, **found.pulses.facts}
-    return {"recording": found.name, "channel": channel, **known, **values}
+def _row(result: RecordingIndicators, channel: str) -> dict[str, Any]:
+    values = {name: None if np.isnan(value) else value for name, value in result.channel(channel).items()}
+    known = {"speed_hz": result.pulses.speed_hz, **result.pulses.facts}
+    return {"recording": result.name, "channel": channel, **known, **values}
 
 
-def _overview(found: Sequence[RecordingIndicators]) -> TableBlock:
+def _overview(results: Sequence[RecordingIndicators]) -> TableBlock:
     rows = [
         (
             *(one.name, f"{one.pulses.speed_hz:.4f}", f"{one.mesh_hz:.2f}"),
             *(f"{one.revolutions[0]} and {one.revolutions[1]}", one.pulses.origin, f"{one.recording.duration_s:.3g}"),
         )
-        for one in found
+        for one in results
     ]
     head = ("Recording", "First shaft [Hz]", "Mesh [Hz]", "Turns averaged", "Angle from", "Length [s]")
     return table(head, rows, "What was found in each recording.", text=True)
 
 
-def _section(found: RecordingIndicators) -> list[Block]:
+def _section(result: RecordingIndicators) -> list[Block]:
     blocks: list[Block] = []
-    if (angle := found.pulses.angle) is not None:
+    if (angle := result.pulses.angle) is not None:
         with styled():
             blocks.append(FigureBlock(png_bytes(angle_figure(angle)), ANGLE_CAPTION))
-    for channel in found.recording.channels if found.pulses.outcome == "angle" else ():
+    for channel in result.recording.channels if result.pulses.outcome == "angle" else ():
         with styled():
-            png = png_bytes(sideband_figure(found.recording, found.mesh, found.pulses, channel))
+            png = png_bytes(sideband_figure(result.recording, result.mesh, result.pulses, channel))
         blocks.append(FigureBlock(png, f"Order spectrum (Hann) around mesh harmonics: {channel}."))
-    names, values = indicator_matrix(found)
-    known = indicator_columns(IndicatorSettings(), gear_names(found.train))
+    names, values = indicator_matrix(result)
+    known = indicator_columns(IndicatorSettings(), gear_names(result.train))
     rows = [
         (Cell(known[name].title, small=name), *of_channels)
         for name, of_channels in zip(names, values.tolist(), strict=True)
     ]
-    head = ("Indicator", *found.recording.channels)
-    caption = f"Indicators of the whole recording. {found.recording.levels_sentence}"
+    head = ("Indicator", *result.recording.channels)
+    caption = f"Indicators of the whole recording. {result.recording.levels_sentence}"
     return [
-        Heading(found.name),
+        Heading(result.name),
         FigureGrid(blocks),
         table(head, rows, caption, ".4g", sortable=True, tall=True),
-        *note_blocks([found.note] if found.note else []),
+        *note_blocks([result.note] if result.note else []),
     ]
 
 
@@ -138,13 +138,13 @@ def _mesh_orders(mesh: GearMesh) -> list[float]:
 
 def strongest_mesh_line(lines: OrderLines, teeth: tuple[int, int], orders: Sequence[float]) -> float:
     """Return the largest ratio of power between a mesh line's bin and the noise beside it, of harmonics 1 ..."""
-    found = [0.0]
+    ratios = [0.0]
     for h, order in enumerate(orders, start=1):
         noise = noise_density(lines, teeth, h) * 1.5 * lines.bin_hz
         line = lines.line(order)
         if math.isfinite(line) and noise > 0.0:
-            found.append(0.5 * line**2 / noise)
-    return float(np.max(found))
+            ratios.append(0.5 * line**2 / noise)
+    return float(np.max(ratios))
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,13 +224,13 @@ def recording_indicators(
     recording = read_recording(path, None, facts)
     train = train_of(gears)
     pulses = shaft_pulses(recording, train, speed_range_hz, speed_alone=True)
-    found = record_values(recording.channels, pulses.times_s, recording.fs_hz, train)
+    taken = record_values(recording.channels, pulses.times_s, recording.fs_hz, train)
     name = path.name if facts.row is None else f"{path.name}:{facts.row}"
     doubts = _doubts(recording, pulses, train)
     if pulses.outcome != "angle":
         angled = f"{pulses.origin}. Only indicators of the raw signal are given"
-        return RecordingIndicators(name, recording, train, pulses, found.values, (0, 0), angled, doubts)
-    return RecordingIndicators(name, recording, train, pulses, found.values, found.revolutions, found.notes, doubts)
+        return RecordingIndicators(name, recording, train, pulses, taken.values, (0, 0), angled, doubts)
+    return RecordingIndicators(name, recording, train, pulses, taken.values, taken.revolutions, taken.notes, doubts)
 
 
 def _doubts(recording: MeasuredRecording, pulses: ShaftPulses, train: GearTrain) -> tuple[str, ...]:
@@ -243,9 +243,9 @@ def _doubts(recording: MeasuredRecording, pulses: ShaftPulses, train: GearTrain)
     return tuple(text for text in (level_note(recording),) if text)
 
 
-def indicator_matrix(found: RecordingIndicators) -> tuple[tuple[str, ...], np.ndarray]:
+def indicator_matrix(result: RecordingIndicators) -> tuple[tuple[str, ...], np.ndarray]:
     """Return the indicators' names and their values (indicators, channels); NaN where undefined."""
-    channels = list(found.recording.channels)
-    names = tuple(dict.fromkeys(key.rpartition("__")[0] for key in found.values))
-    values = [[found.values.get(f"{name}__{channel}", np.nan) for channel in channels] for name in names]
+    channels = list(result.recording.channels)
+    names = tuple(dict.fromkeys(key.rpartition("__")[0] for key in result.values))
+    values = [[result.values.get(f"{name}__{channel}", np.nan) for channel in channels] for name in names]
     return names, np.array(values, dtype=np.float64).reshape(len(names), len(channels))

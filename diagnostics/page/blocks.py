@@ -235,7 +235,7 @@ class Page:
     @property
     def sections(self) -> list[Heading]:
         """The headings that its contents lead to."""
-        return [one for one in self.blocks if isinstance(one, Heading) and one.level == 2]
+        return [block for block in self.blocks if isinstance(block, Heading) and block.level == 2]
 
 
 def summary_blocks(sentences: Sequence[str], verdict: str = "") -> list[Block]:

@@ -68,7 +68,7 @@ def _template(path: Path, known: Mapping[str, Any]) -> Template:
     require_packages("a page", "jinja2")
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    found = Environment(
+    environment = Environment(
         loader=FileSystemLoader(path.parent),
         autoescape=False,  # no HTML: pages escape all of it, `markdown` what stands in Markdown
         finalize=lambda value: value.strip(" \n") if isinstance(value, str) else value,
@@ -76,9 +76,9 @@ def _template(path: Path, known: Mapping[str, Any]) -> Template:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    found.filters |= {one.__name__: one for one in FILTERS} | {"each": _each, "form": format, "those": _those}
-    found.tests["finite"] = math.isfinite
-    return found.get_template(path.name, globals=known)
+    environment.filters |= {one.__name__: one for one in FILTERS} | {"each": _each, "form": format, "those": _those}
+    environment.tests["finite"] = math.isfinite
+    return environment.get_template(path.name, globals=known)
 
 
 def one_line(text: str) -> str:

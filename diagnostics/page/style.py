@@ -169,13 +169,13 @@ def sideband_places(mesh: GearMesh, harmonic: int, count: int) -> dict[str, np.n
 def _of_planets(gears: tuple[str, ...], planets: Planets, harmonic: int, steps: np.ndarray) -> dict[str, np.ndarray]:
     sun, planet, ring = planets.teeth
     step, carrier = planets.passing, sun / ring
-    own = harmonic * sun + steps
-    through = own - np.round(own / step) * step  # the order of the path that equal planets leave
+    of_sun = harmonic * sun + steps
+    through = of_sun - np.round(of_sun / step) * step  # the order of the path that equal planets leave
     nearest = np.round(harmonic * ring / step) * step - harmonic * ring
     paths = np.arange(-(len(planets.places) // 2), len(planets.places) // 2 + 1)
-    one = (steps[:, None] * (ring / planet) + paths).ravel()
+    of_planet = (steps[:, None] * (ring / planet) + paths).ravel()
     passing = nearest + step * np.concatenate([[0.0], steps])
-    return {gears[0]: steps + through * carrier, PASSING: passing * carrier, gears[1]: one * carrier}
+    return {gears[0]: steps + through * carrier, PASSING: passing * carrier, gears[1]: of_planet * carrier}
 
 
 ORDERS_SHOWN, SIDEBANDS, DECADES_SHOWN = 4.6, 4, 5.0

@@ -61,14 +61,14 @@ def environment() -> Environment:
 
     def inline(text: str) -> Markup:
         """Return text with `code` between backticks, long names broken between their parts."""
-        found = re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(printable(text, lines=True))))
-        return Markup(re.sub(r"(?<=\w)_(?=[^\W_])", "_<wbr>", found))
+        escaped = re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(printable(text, lines=True))))
+        return Markup(re.sub(r"(?<=\w)_(?=[^\W_])", "_<wbr>", escaped))
 
     def bold(text: Markup) -> Markup:
         """Return text with what stands between `**` in bold."""
         return Markup(re.sub(r"\*\*(.+?)\*\*", r"<b>\1</b>", str(text)))
 
-    found = Environment(
+    jinja = Environment(
         loader=FileSystemLoader(TEMPLATES),
         autoescape=True,
         finalize=shown,
@@ -76,11 +76,11 @@ def environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    found.filters |= {
+    jinja.filters |= {
         "inline": inline,
         "bold": bold,
         "minus": minus,
         "base64": lambda png: base64.b64encode(png).decode("ascii"),
         "script_json": lambda value: Markup(script_json(value)),
     }
-    return found
+    return jinja

@@ -46,25 +46,25 @@ def signed(value: float) -> str:
     return text[1:] if text[1:] == "0.00" else text.replace("-", "\N{MINUS SIGN}")
 
 
-def limits(found: Interval) -> str:
+def limits(interval: Interval) -> str:
     """Return the limits of a value, or why there are none."""
-    return _limits(found, decimal)
+    return _limits(interval, decimal)
 
 
-def signed_limits(found: Interval) -> str:
+def signed_limits(interval: Interval) -> str:
     """Return the limits of a difference, or why there are none."""
-    return _limits(found, signed)
+    return _limits(interval, signed)
 
 
-def percent_limits(found: Interval) -> str:
+def percent_limits(interval: Interval) -> str:
     """Return the limits of a share, or why there are none."""
-    return _limits(found, percent)
+    return _limits(interval, percent)
 
 
-def _limits(found: Interval, written: Callable[[float], str]) -> str:
-    if math.isnan(found.low):
+def _limits(interval: Interval, written: Callable[[float], str]) -> str:
+    if math.isnan(interval.low):
         return "no interval from so few gearboxes"
-    return f"{written(found.low)} to {written(found.high)}"
+    return f"{written(interval.low)} to {written(interval.high)}"
 
 
 def minus(text: str) -> str:
