@@ -142,8 +142,8 @@ class KindFound:
 
 def kinds_of(best: JudgedDetector, *, ordered: bool = True) -> list[KindFound]:
     """Return all kinds of damage; ordered: what is found comes first, what is told next."""
-    found = [_kind(best, kind, members) for kind, members in best.kinds.items()]
-    return sorted(found, key=lambda kind: (not kind.reached, not kind.told)) if ordered else found
+    kinds = [_kind(best, kind, members) for kind, members in best.kinds.items()]
+    return sorted(kinds, key=lambda kind: (not kind.reached, not kind.told)) if ordered else kinds
 
 
 def _kind(best: JudgedDetector, kind: str, members: list[str]) -> KindFound:
@@ -193,11 +193,11 @@ LEAST_RATIO = 1.7
 """Of neighbouring sizes whose names do not touch."""
 
 
-def answer_figure(found: Detectors) -> Figure | None:
+def answer_figure(detectors: Detectors) -> Figure | None:
     """Return AUC by state over its damaged area above, sizes found in nine of ten below; None without any detector."""
     from matplotlib.figure import Figure
 
-    sides = [("On an unseen gearbox", found.alone), ("With its healthy record", found.referenced)]
+    sides = [("On an unseen gearbox", detectors.alone), ("With its healthy record", detectors.referenced)]
     panels = [(title, {family: side[family] for family in LOOKS if family in side}) for title, side in sides if side]
     if not panels:
         return None
@@ -206,16 +206,16 @@ def answer_figure(found: Detectors) -> Figure | None:
         figure = Figure(figsize=(WIDTH_IN, 3.3 + 0.4 * (len(kinds) - 1)), layout="constrained")
         heights = {"height_ratios": [3.4, 0.6 + 0.65 * len(kinds)]}
         axes = figure.subplots(2, len(panels), squeeze=False, sharex=True, sharey="row", gridspec_kw=heights)
-        for column, (title, detectors) in enumerate(panels):
-            _draw_areas(axes[0, column], detectors, kinds)
-            _draw_sizes(axes[1, column], detectors, kinds)
-            _name_states(axes[0, column], detectors)
+        for column, (title, side) in enumerate(panels):
+            _draw_areas(axes[0, column], side, kinds)
+            _draw_sizes(axes[1, column], side, kinds)
+            _name_states(axes[0, column], side)
             axes[0, column].set_title(title, loc="left", fontweight="bold")
-        _scale(axes[1, 0], [detector for _, detectors in panels for detector in detectors.values()])
+        _scale(axes[1, 0], [detector for _, side in panels for detector in side.values()])
         axes[0, 0].set_ylabel("AUC against\nhealthy [-]")
         figure.supxlabel("Damaged area [mm²]", fontsize=10)
         _show_dashes(axes[1, 0], kinds, 0.15 * len(panels))
-        shown = [family for family in LOOKS if any(family in detectors for _, detectors in panels)]
+        shown = [family for family in LOOKS if any(family in side for _, side in panels)]
         figure.legend(
             *_legend(shown), loc="outside upper left", ncols=5, fontsize=9, handletextpad=0.3, columnspacing=1.2
         )
@@ -296,11 +296,11 @@ def _draw_size(axis: Any, size: FoundSize, row: float, family: str) -> None:
     if not size.reached:
         axis.plot(size.largest_mm2, row, marker="x", color=colour, markersize=6, markeredgewidth=2.2 if answer else 1.4)
         return
-    found = size.area_mm2
-    axis.plot([found.value, size.largest_mm2], [row, row], color=colour, linewidth=4.5, alpha=0.35)
-    high = found.high if math.isfinite(found.high) else size.largest_mm2
-    axis.plot([found.low, high], [row, row], color=colour, linewidth=1.1)
-    axis.plot(found.value, row, marker=marker, color=colour, markersize=5.5 if answer else 4)
+    area = size.area_mm2
+    axis.plot([area.value, size.largest_mm2], [row, row], color=colour, linewidth=4.5, alpha=0.35)
+    high = area.high if math.isfinite(area.high) else size.largest_mm2
+    axis.plot([area.low, high], [row, row], color=colour, linewidth=1.1)
+    axis.plot(area.value, row, marker=marker, color=colour, markersize=5.5 if answer else 4)
 
 
 def _scale(axis: Any, detectors: Sequence[JudgedDetector]) -> None:
@@ -340,23 +340,23 @@ def _legend(families: Sequence[str]) -> tuple[list[Any], list[str]]:
     return lines, [name for name, _, _ in looks]
 
 
-def answer_sentences(found: Detectors, *, error_free: bool = False) -> list[tuple[str, str]]:
+def answer_sentences(detectors: Detectors, *, error_free: bool = False) -> list[tuple[str, str]]:
     """Return the answers, each with its question in a few words.
 
     Parameters
     ----------
-    found : Detectors
+    detectors : Detectors
     error_free : bool
         Whether the gears have no manufacturing errors, so that any damage above the noise is separated.
     """
-    best = found.strongest
+    best, alone = detectors.strongest, detectors.alone
     if best is None:
-        return [("No answer", capitalised(ANSWERS.lacking(found)))]
-    rivals = {name: found.alone[name] for name in (BOOSTED, CLASSIFIER, INDICATOR, NETWORKS) if name in found.alone}
+        return [("No answer", capitalised(ANSWERS.lacking(detectors)))]
+    rivals = {name: alone[name] for name in (BOOSTED, CLASSIFIER, INDICATOR, NETWORKS) if name in alone}
     return [
-        *([("On a sham", sham)] if (sham := ANSWERS.on_a_sham(found)) else []),
+        *([("On a sham", sham)] if (sham := ANSWERS.on_a_sham(detectors)) else []),
         ("From which size", ANSWERS.from_which_size(best)),
-        ("By what", ANSWERS.by_what(found, rivals)),
-        ("With a healthy record of the same gearbox", ANSWERS.beside_a_healthy_record(found)),
+        ("By what", ANSWERS.by_what(detectors, rivals)),
+        ("With a healthy record of the same gearbox", ANSWERS.beside_a_healthy_record(detectors)),
         ("How sure", ANSWERS.how_sure(best, error_free)),
     ]

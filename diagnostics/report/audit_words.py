@@ -16,11 +16,11 @@ def audit_beside(dataset: Dataset) -> dict[str, Any] | None:
     """Return the content of `audit.json` in the folder beside a set, DIR_audit; None without one of this very set."""
     path = folder_beside(dataset.path, "_audit") / "audit.json"
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        audit = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    same = isinstance(found, dict) and found.get("identity") == dataset.manifest["identity"]
-    return found if same else None
+    same = isinstance(audit, dict) and audit.get("identity") == dataset.manifest["identity"]
+    return audit if same else None
 
 
 def audit_sentence(dataset: Dataset, audit: Mapping[str, Any] | None) -> str:

@@ -81,11 +81,11 @@ def score_figure(training: Training) -> Figure:
     for axis, (title, colour, level) in zip(axes[0], panels, strict=True):
         axis.axvline(level, color=CHANCE_COLOUR, linestyle="--", linewidth=1.0)
         for row, judged in enumerate(training.judged):
-            found = judged.scores.accuracy if axis is axes[0, 0] else judged.scores.macro_auroc
+            interval = judged.scores.accuracy if axis is axes[0, 0] else judged.scores.macro_auroc
             axis.plot(
-                [found.low, found.high], [row, row], color=colour, linewidth=2.5, alpha=0.5, solid_capstyle="butt"
+                [interval.low, interval.high], [row, row], color=colour, linewidth=2.5, alpha=0.5, solid_capstyle="butt"
             )
-            axis.plot(found.value, row, marker="o", markersize=6, color=colour)
+            axis.plot(interval.value, row, marker="o", markersize=6, color=colour)
         axis.set_xlim(0.0, 1.03)
         axis.set_xlabel(title)
     axes[0, 0].set_yticks(range(len(training.judged)), [_name(judged) for judged in training.judged], fontsize=9)
@@ -122,21 +122,21 @@ MOST_NAMES = 3
 """Names shown of what a class that training lacked is called."""
 
 
-def nested_blocks(found: Nested | None, kind: str = STATE) -> list[Block]:
+def nested_blocks(nested: Nested | None, kind: str = STATE) -> list[Block]:
     """Return the blocks; nothing where the set has too few gearboxes for folds."""
-    if found is None:
+    if nested is None:
         return []
-    matrix = confusion_table(found.scores, "Nested folds over all gearboxes", "records of all gearboxes", kind=kind)
-    return [Paragraph(CLASSIFIERS.nested(found)), matrix, *([_strangers(found.strangers)] if found.strangers else [])]
+    matrix = confusion_table(nested.scores, "Nested folds over all gearboxes", "records of all gearboxes", kind=kind)
+    return [Paragraph(CLASSIFIERS.nested(nested)), matrix, _strangers(nested.strangers)]
 
 
-def _strangers(found: tuple[Stranger, ...]) -> TableBlock:
+def _strangers(strangers: tuple[Stranger, ...]) -> TableBlock:
     rows = [
         (
-            *(one.name, one.records, cell(one.rejected, ".0%")),
-            joined([f"{name} {share:.0%}" for name, share in list(one.called.items())[:MOST_NAMES]]) or None,
+            *(stranger.name, stranger.records, cell(stranger.rejected, ".0%")),
+            joined([f"{name} {share:.0%}" for name, share in list(stranger.called.items())[:MOST_NAMES]]) or None,
         )
-        for one in found
+        for stranger in strangers
     ]
     head = ["Class that training lacks", "Records", "Called something else", "Called"]
     return table(head, rows, CLASSIFIERS.strangers(KNOWN_ACCEPTED))
@@ -165,12 +165,12 @@ def detection_blocks(training: Training) -> list[Block]:
     texts = [CLASSIFIERS.merged(name, states) for name, states in merged.items()]
     texts += [] if training.judged[0].scores.balanced else [CLASSIFIERS.unequal(training)]
     blocks: list[Block] = [Paragraph(text) for text in texts]
-    shown = tuple(found for found in training.judged if found.detection)
+    shown = tuple(judged for judged in training.judged if judged.detection)
     if not shown:
         return blocks
     blocks += [Paragraph(text) for text in gain_sentences(training)]
     blocks.append(detection_table(shown, CLASSIFIERS.damaged_or_not(training.split.healthy)))
-    other = tuple(found for found in training.other if found.detection)
+    other = tuple(judged for judged in training.other if judged.detection)
     if other:
         blocks.append(
             detection_table(
@@ -190,23 +190,23 @@ def gain_sentences(training: Training) -> list[str]:
     return [CLASSIFIERS.detection_gain(best.first, gain)]
 
 
-def detection_table(found: tuple[Judged, ...], caption: str) -> TableBlock:
+def detection_table(shown: tuple[Judged, ...], caption: str) -> TableBlock:
     """Return AUROC of healthy against all damaged records, and against every state, by classifier."""
-    states = list(dict.fromkeys(name for judged in found if judged.detection for name in judged.detection.by_class))
+    states = list(dict.fromkeys(name for judged in shown if judged.detection for name in judged.detection.by_class))
     rows = [
         (TITLES[judged.name], judged.detection.every, *(judged.detection.by_class[state] for state in states))
-        for judged in found
+        for judged in shown
         if judged.detection
     ]
     return table(["Classifier", "all damage", *states], rows, caption, sortable=True)
 
 
-def detector_table(found: Detectors) -> TableBlock:
+def detector_table(detectors: Detectors) -> TableBlock:
     """Return all detectors, those beside a healthy record below those without; nothing without any.
 
     AUC and alarms of a state lead to its records.
     """
-    every = list({id(one): one for side in (found.alone, found.referenced) for one in side.values()}.values())
+    every = list({id(one): one for side in (detectors.alone, detectors.referenced) for one in side.values()}.values())
     states = list(dict.fromkeys(name for detector in every for name in detector.states))
     kinds = list(dict.fromkeys(state.kind for detector in every for state in detector.states.values()))
     shams = any(one.sham for one in every)
@@ -227,33 +227,31 @@ def _row(detector: JudgedDetector, states: list[str], kinds: list[str], *, shams
     basis = in_a_sentence(detector.basis, detector.gears) if detector.basis else CLASSIFIERS.picked(detector.picks)
     small = ", ".join(part for part in (basis, beside) if part)
     shown = {"indicator": detector.basis} if detector.basis else {}
-    found = detector.states
+    judged = detector.states
     return [
         *(Cell(detector.title, small), detector.specimens, *([detector.sham] if shams else []), detector.every),
-        *(linked_cell(cell(found[name].auc), state=name, **shown) if name in found else None for name in states),
+        *(linked_cell(cell(judged[name].auc), state=name, **shown) if name in judged else None for name in states),
         *(linked_cell(_alarms(detector, name), state=name, **shown) for name in states),
         *(_size_cell(detector.sizes.get(kind)) for kind in kinds),
     ]
 
 
 def _alarms(detector: JudgedDetector, name: str) -> Cell:
-    found = detector.states[name].share if name in detector.states else None
-    if found is None:
+    share = detector.states[name].share if name in detector.states else None
+    if share is None:
         return cell(None)
-    limits = "" if math.isnan(found.low) else f"{100 * found.low:.0f} … {100 * found.high:.0f}"
-    return Cell(f"{100 * found.value:.0f}", limits, 100.0 * found.value)
+    limits = "" if math.isnan(share.low) else f"{100 * share.low:.0f} … {100 * share.high:.0f}"
+    return Cell(f"{100 * share.value:.0f}", limits, 100.0 * share.value)
 
 
-def _size_cell(found: FoundSize | None) -> Cell:
-    if found is None:
+def _size_cell(size: FoundSize | None) -> Cell:
+    if size is None:
         return cell(None)
-    if not found.reached:
-        return Cell("not found", f"up to {rounded(found.largest_mm2)}", 1e9)
-    high = rounded(found.area_mm2.high) if math.isfinite(found.area_mm2.high) else "∞"
-    bound = "≤ " if found.is_bound else ""
-    return Cell(
-        f"{bound}{rounded(found.area_mm2.value)}", f"{rounded(found.area_mm2.low)} … {high}", found.area_mm2.value
-    )
+    if not size.reached:
+        return Cell("not found", f"up to {rounded(size.largest_mm2)}", 1e9)
+    high = rounded(size.area_mm2.high) if math.isfinite(size.area_mm2.high) else "∞"
+    bound = "≤ " if size.is_bound else ""
+    return Cell(f"{bound}{rounded(size.area_mm2.value)}", f"{rounded(size.area_mm2.low)} … {high}", size.area_mm2.value)
 
 
 def comparison_table(training: Training) -> TableBlock:
@@ -277,11 +275,11 @@ def verdict(difference: Interval, specimens: int) -> str:
 
 def other_set_table(training: Training) -> TableBlock:
     """Return the scores on another set beside those on the own test specimens."""
-    own = {found.name: found for found in training.judged}
+    here = {judged.name: judged for judged in training.judged}
     rows = [
         (
-            *(TITLES[there.name], there.scores.macro_auroc, own[there.name].scores.macro_auroc),
-            *(there.scores.accuracy, own[there.name].scores.accuracy, there.calibration.after),
+            *(TITLES[there.name], there.scores.macro_auroc, here[there.name].scores.macro_auroc),
+            *(there.scores.accuracy, here[there.name].scores.accuracy, there.calibration.after),
         )
         for there in training.other
     ]
@@ -290,7 +288,7 @@ def other_set_table(training: Training) -> TableBlock:
     return table([*head, "Calibration error there"], rows, caption, sortable=True)
 
 
-def referenced_table(found: Referenced) -> TableBlock:
+def referenced_table(referenced: Referenced) -> TableBlock:
     """Return what classifiers reach alone and beside a healthy record of the same gearbox, on the same records."""
     rows = [
         (
@@ -299,21 +297,21 @@ def referenced_table(found: Referenced) -> TableBlock:
             one.scores.accuracy,
             one.detection.every if one.detection else UNDEFINED,
         )
-        for one in found.judged
+        for one in referenced.judged
     ]
     head = ["Classifier", "Macro-AUROC [-]", "Accuracy [-]", "Damaged or not, AUROC [-]"]
-    return table(head, rows, CLASSIFIERS.referenced(found.judged[0].scores.records), sortable=True)
+    return table(head, rows, CLASSIFIERS.referenced(referenced.judged[0].scores.records), sortable=True)
 
 
-def referenced_pairs_table(found: Referenced) -> TableBlock:
+def referenced_pairs_table(referenced: Referenced) -> TableBlock:
     """Return the paired differences that a healthy record makes."""
-    specimens = found.judged[0].scores.specimens
+    specimens = referenced.judged[0].scores.specimens
     rows = [
         (
             f"{TITLES[pair.first]} − {TITLES[pair.second]}",
             *(pair.macro_auroc, pair.detection or UNDEFINED, verdict(pair.macro_auroc, specimens)),
         )
-        for pair in found.comparisons
+        for pair in referenced.comparisons
     ]
     head = ["Paired difference", "Macro-AUROC", "Damaged or not", "Interval excludes 0"]
     return table(head, rows, CLASSIFIERS.reference_worth(), "+.2f", sortable=True)

@@ -86,17 +86,17 @@ def panel_title(column: str, gears: GearNames, width: int = 38) -> str:
     return "\n".join(textwrap.wrap(f"{title} ({channel})" if channel else title, width))
 
 
-def separation_rows(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> dict[str, list[float]]:
+def separation_rows(results: Sequence[IndicatorResult], states: tuple[str, ...]) -> dict[str, list[float]]:
     """Return the separations in both designs by indicator, median over channels, best first: `others` then `same`."""
-    names = list(dict.fromkeys(result.indicator for result in found)) if states else []
-    values = {name: _medians(found, name, states) for name in names}
+    names = list(dict.fromkeys(result.indicator for result in results)) if states else []
+    values = {name: _medians(results, name, states) for name in names}
     shown = sorted(names, key=lambda name: -_mean(values[name][: len(states)]))[:ROWS_SHOWN]
     return {name: values[name] for name in shown}
 
 
-def _medians(found: Sequence[IndicatorResult], name: str, states: tuple[str, ...]) -> list[float]:
+def _medians(results: Sequence[IndicatorResult], name: str, states: tuple[str, ...]) -> list[float]:
     """Return the median over channels of the separations, turned so that 1 is perfect."""
-    rows = [result for result in found if result.indicator == name]
+    rows = [result for result in results if result.indicator == name]
     medians = []
     for design in ("others", "same"):
         for state in states:
@@ -153,10 +153,10 @@ def _unit(result: IndicatorResult, channels: Mapping[str, ShownQuantity]) -> str
 def _draw_ladders(axis: Any, labels: dict[str, np.ndarray], values: np.ndarray, ladder: tuple[str, ...]) -> None:
     """Draw the mean of every specimen over the states."""
     for specimen in np.unique(labels["specimen_id"])[:60]:
-        own = labels["specimen_id"] == specimen
+        of_specimen = labels["specimen_id"] == specimen
         means = []
         for state in ladder:
-            chosen = values[own & (labels["state"] == state)]
+            chosen = values[of_specimen & (labels["state"] == state)]
             defined = chosen[np.isfinite(chosen)]
             means.append(float(defined.mean()) if defined.size else np.nan)
         axis.plot(range(len(ladder)), means, color="#8a97a3", linewidth=0.5, alpha=0.7)
@@ -212,43 +212,43 @@ FEWEST_SPECIMENS = 3
 WITH_HISTORY = ("na4_", "nb4_")
 
 
-def indicator_findings(found: Sequence[IndicatorResult], states: tuple[str, ...], specimens: int) -> list[str]:
+def indicator_findings(results: Sequence[IndicatorResult], states: tuple[str, ...], specimens: int) -> list[str]:
     """Return four findings: best in each design, hardest and easiest state, what survives, the smallest size found."""
     if not states:
         return [FINDINGS.no_damage()]
     if specimens < FEWEST_SPECIMENS:
         return [FINDINGS.few(specimens, FEWEST_SPECIMENS)]
-    told = (_best(found, states), _by_state(found, states), _survivors(found, specimens), _smallest(found))
+    told = (_best(results, states), _by_state(results, states), _survivors(results, specimens), _smallest(results))
     return [text for text in told if text]
 
 
 def hardest_sentence(evaluated: Evaluated) -> str:
     """Say which state single indicators find worst, of one state how well it is found; nothing without a state."""
-    found, states = evaluated.found, evaluated.records.states
+    results, states = evaluated.results, evaluated.records.states
     if not states or _specimens(evaluated.table) < FEWEST_SPECIMENS:
         return ""
-    return _by_state(found, states) or _best(found, states)
+    return _by_state(results, states) or _best(results, states)
 
 
-def single_records(found: Sequence[IndicatorResult]) -> list[IndicatorResult]:
+def single_records(results: Sequence[IndicatorResult]) -> list[IndicatorResult]:
     """Return the indicators that know nothing but their own record."""
-    return [result for result in found if not result.indicator.startswith(WITH_HISTORY)]
+    return [result for result in results if not result.indicator.startswith(WITH_HISTORY)]
 
 
-def _best(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
-    single = [result for result in single_records(found) if math.isfinite(result.score_others.value)]
+def _best(results: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
+    single = [result for result in single_records(results) if math.isfinite(result.score_others.value)]
     paired = [result for result in single if math.isfinite(result.score_same.value)]
     other = max(single, key=lambda result: result.score_others.value, default=None)
     return FINDINGS.best(other, max(paired, key=lambda result: result.score_same.value, default=None), states)
 
 
-def best_by_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> dict[str, tuple[float, str]]:
+def best_by_state(results: Sequence[IndicatorResult], states: tuple[str, ...]) -> dict[str, tuple[float, str]]:
     """Return by state the best AUC between other specimens, turned by direction, and whose it is."""
     best = {}
     for state in states:
         turned = [
             (0.5 + r.direction * (r.others[state].separation.value - 0.5), r.column)
-            for r in single_records(found)
+            for r in single_records(results)
             if math.isfinite(r.others[state].separation.value)
         ]
         if turned:
@@ -256,17 +256,17 @@ def best_by_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> 
     return best
 
 
-def _by_state(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
+def _by_state(results: Sequence[IndicatorResult], states: tuple[str, ...]) -> str:
     """Name the hardest and the easiest of several states."""
-    best = best_by_state(found, states)
+    best = best_by_state(results, states)
     if len(best) < 2:
         return ""  # the sentence before has said it
     hardest, easiest = (chosen(best, key=lambda state: best[state][0]) for chosen in (min, max))
-    return FINDINGS.by_state((hardest, *best[hardest]), (easiest, *best[easiest]), found[0].gears)
+    return FINDINGS.by_state((hardest, *best[hardest]), (easiest, *best[easiest]), results[0].gears)
 
 
-def _survivors(found: Sequence[IndicatorResult], specimens: int) -> str:
-    others, same = ([r for entry in found for r in getattr(entry, design).values()] for design in ("others", "same"))
+def _survivors(judged: Sequence[IndicatorResult], specimens: int) -> str:
+    others, same = ([r for entry in judged for r in getattr(entry, design).values()] for design in ("others", "same"))
     tested = [sum(math.isfinite(r.p_value) for r in results) for results in (others, same)]
     return FINDINGS.survivors(
         tested,
@@ -279,9 +279,9 @@ def _survivors(found: Sequence[IndicatorResult], specimens: int) -> str:
     )
 
 
-def _smallest(found: Sequence[IndicatorResult]) -> str:
+def _smallest(results: Sequence[IndicatorResult]) -> str:
     name = "others_area_mm2_a90"
-    judged = [r for r in single_records(found) if name in r.detectable and not math.isnan(r.detectable[name].value)]
+    judged = [r for r in single_records(results) if name in r.detectable and not math.isnan(r.detectable[name].value)]
     reached = [r for r in judged if math.isfinite(r.detectable[name].value)]
     best = min(reached, key=lambda r: (r.detectable[name].value, -r.score_others.value), default=None)
     size, least = (best.detectable[name], best.smallest_size["others_area_mm2"]) if best else (None, None)
@@ -309,7 +309,7 @@ def _behind(cell: Cell, column: str, **chosen: object) -> Cell:
     return cell if column.startswith(OF_HISTORY) else linked_cell(cell, indicator=column, **chosen)
 
 
-def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> TableBlock:
+def ranks_table(results: Sequence[IndicatorResult], states: tuple[str, ...]) -> TableBlock:
     """Return the best indicators between other specimens in their order, with the AUC of every state."""
     head = ["Indicator, channel", "Rank", "Score", *(f"AUC, {state}" for state in states), "With damage"]
     rows = [
@@ -318,10 +318,10 @@ def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> T
             *(_behind(cell(r.others[state].separation), r.column, state=state) for state in states),
             ARROWS[r.direction],
         )
-        for rank, r in enumerate(found, start=1)
+        for rank, r in enumerate(results, start=1)
         if rank <= MOST_RANKED or known_column(r.column, r.gears) is None
     ]
-    shown = f"The best {len(rows)} of {len(found)}" if len(found) > len(rows) else "Ranking"
+    shown = f"The best {len(rows)} of {len(results)}" if len(results) > len(rows) else "Ranking"
     caption = (
         f"{shown} between different specimens: AUC against healthy with 95 % limits. The score is their mean, of an "
         "indicator that falls with damage 1 less it."
@@ -329,7 +329,7 @@ def ranking_html(found: Sequence[IndicatorResult], states: tuple[str, ...]) -> T
     return table(head, rows, caption + BEHIND, sortable=True, tall=True)
 
 
-def separation_html(rows: Mapping[str, Sequence[float]], states: tuple[str, ...], gears: GearNames) -> TableBlock:
+def separation_table(rows: Mapping[str, Sequence[float]], states: tuple[str, ...], gears: GearNames) -> TableBlock:
     """Return the heat map: separation of every state in both designs, best first, empty without rows."""
     head = ["Indicator", *(f"{state}, {design}" for design in ("others", "same") for state in states)]
     cells = [
@@ -351,25 +351,25 @@ def _separation(value: float) -> Cell:
     return replace(cell(value), shade=2.0 * value - 1.0)
 
 
-def best_html(best: Mapping[str, tuple[float, str]], gears: GearNames) -> TableBlock:
+def best_table(best: Mapping[str, tuple[float, str]], gears: GearNames) -> TableBlock:
     """Return the best single indicator of every state."""
     rows = [(state, value, term_cell(column, gears)) for state, (value, column) in best.items()]
     caption = "Best single indicator of each state, between different specimens. The best of many is optimistic."
     return table(["State", "AUC [-]", "Indicator and channel"], rows, caption, sortable=True, text=True)
 
 
-def undefined_html(found: Sequence[IndicatorResult], left_out: Mapping[str, float]) -> TableBlock:
+def undefined_table(results: Sequence[IndicatorResult], left_out: Mapping[str, float]) -> TableBlock:
     """Return which indicators have no value in some records, how often, and when that is so.
 
     Parameters
     ----------
-    found : sequence of IndicatorResult
+    results : sequence of IndicatorResult
         All results.
     left_out : mapping of str to float
         By channel, the share of records that were left out: there every indicator is undefined, for another reason.
     """
     rows = []
-    for result in sorted(found, key=lambda r: (r.defined_share, r.column)):
+    for result in sorted(results, key=lambda r: (r.defined_share, r.column)):
         missing = 1.0 - result.defined_share - left_out.get(result.channel, 0.0)
         if missing > 1e-9:
             known = known_column(result.column, result.gears)
@@ -380,7 +380,7 @@ def undefined_html(found: Sequence[IndicatorResult], left_out: Mapping[str, floa
     return table(head, rows, caption, ".1f", sortable=True, tall=True, text=True)
 
 
-def definition_html(held: Collection[str]) -> TableBlock:
+def term_table(held: Collection[str]) -> TableBlock:
     """Return the definitions of the indicators that are taken of these quantities."""
     head = ["Column starts with", "Indicator", "Taken from", "Value", "Unit", "On known signals"]
     rows = [
@@ -405,13 +405,13 @@ class Evaluated:
     table: IndicatorTable
     settings: AssessmentSettings
     records: JudgedRecords
-    found: list[IndicatorResult]
+    results: list[IndicatorResult]
 
     @property
     def shown(self) -> list[IndicatorResult]:
         """The best channel of each of the best indicators of different definition."""
         chosen: dict[str, IndicatorResult] = {}
-        for result in self.found:
+        for result in self.results:
             known = known_column(result.column, result.gears)
             chosen.setdefault(known.entry.name if known else result.indicator, result)
         return list(chosen.values())[:CURVES_SHOWN]
@@ -433,16 +433,16 @@ def evaluated(
     """
     chosen = settings or AssessmentSettings()
     with stage("evaluation", len(table.matrix.names)) as advance:
-        found = assessment(table, chosen, advance)
+        results = assessment(table, chosen, advance)
     records = judged_records(table.matrix.labels, chosen.seed, chosen.resamples)
-    return Evaluated(table, chosen, records, found)
+    return Evaluated(table, chosen, records, results)
 
 
-def findings(dataset: Dataset, found: Evaluated) -> list[str]:
+def findings(dataset: Dataset, evaluated: Evaluated) -> list[str]:
     """Say what the scores mean, where the user's own indicators stand, which are best, and what survives."""
-    states = found.records.states
+    states = evaluated.records.states
     meaning = meaning_of_scores(dataset.config, scored=bool(states))
-    return [meaning, *own_ranks(found), *indicator_findings(found.found, states, _specimens(found.table))]
+    return [meaning, *own_ranks(evaluated), *indicator_findings(evaluated.results, states, _specimens(evaluated.table))]
 
 
 def own_ranks(evaluated: Evaluated) -> list[str]:
@@ -451,23 +451,23 @@ def own_ranks(evaluated: Evaluated) -> list[str]:
     None without a damaged state, which gives no order.
     """
     best: dict[str, tuple[int, IndicatorResult]] = {}
-    for rank, result in enumerate(evaluated.found if evaluated.records.states else (), start=1):
+    for rank, result in enumerate(evaluated.results if evaluated.records.states else (), start=1):
         if known_column(result.column, result.gears) is None:
             best.setdefault(result.indicator, (rank, result))
-    return [FINDINGS.own_rank(rank, result, len(evaluated.found)) for rank, result in best.values()]
+    return [FINDINGS.own_rank(rank, result, len(evaluated.results)) for rank, result in best.values()]
 
 
-def write_evaluation(dataset: Dataset, found: Evaluated, folder: Path, *, values: bool = False) -> Path:
+def write_evaluation(dataset: Dataset, evaluated: Evaluated, folder: Path, *, values: bool = False) -> Path:
     """Write `evaluation.parquet` and `.csv` (all results, best first) and `indicators.json`; return the CSV's path.
 
     With `values` also `indicators.parquet`: labels and all indicators of every record, those with a history too.
     """
     if values:
-        write_table(found.table.arrow(), folder / "indicators.parquet")
-    results = result_table(found.found)
+        write_table(evaluated.table.arrow(), folder / "indicators.parquet")
+    results = result_table(evaluated.results)
     write_table(results, folder / "evaluation.parquet")
     write_table(results, folder / "evaluation.csv")
-    numbers = report_numbers(dataset, found, findings(dataset, found))
+    numbers = report_numbers(dataset, evaluated, findings(dataset, evaluated))
     write_file(folder / NUMBERS, json.dumps(numbers, indent=1, allow_nan=False) + "\n")
     return folder / "evaluation.csv"
 
@@ -476,18 +476,18 @@ def _specimens(table: IndicatorTable) -> int:
     return int(np.unique(table.matrix.labels["specimen_id"]).size)
 
 
-def report_numbers(dataset: Dataset, found: Evaluated, sentences: Sequence[str]) -> dict[str, Any]:
+def report_numbers(dataset: Dataset, evaluated: Evaluated, sentences: Sequence[str]) -> dict[str, Any]:
     """Return the content of `indicators.json`; undefined and unreached numbers are null."""
-    table = found.table
+    table = evaluated.table
     return {
         "set": dataset.path.name,
         "identity": dataset.manifest["identity"],
         "records": int(table.matrix.values.shape[0]),
         "specimens": _specimens(table),
-        "states": list(found.records.states),
+        "states": list(evaluated.records.states),
         "summary": list(sentences),
         "indicator_settings": asdict(table.settings),
-        "assessment_settings": asdict(found.settings),
+        "assessment_settings": asdict(evaluated.settings),
         "left_out": problem_lines(table.problems),
         "notes": note_counts(table),
     }
@@ -526,15 +526,15 @@ def figures(evaluated: Evaluated, held: Mapping[str, ShownQuantity]) -> dict[str
 
 def ranking_blocks(dataset: Dataset, evaluated: Evaluated) -> list[Block]:
     """Return what is best, and all indicators in order."""
-    found, names = evaluated.found, evaluated.records.states
+    results, names = evaluated.results, evaluated.records.states
     gears = evaluated.table.matrix.gears
     _, *told = findings(dataset, evaluated)
-    separation = separation_rows(found, names)
+    separation = separation_rows(results, names)
     return [
         *(Paragraph(sentence) for sentence in told),
-        best_html(best_by_state(found, names), gears),
-        ranking_html(found, names),
-        separation_html(separation, names, gears),
+        best_table(best_by_state(results, names), gears),
+        ranks_table(results, names),
+        separation_table(separation, names, gears),
         Paragraph(FINDINGS.how_to_read()),
     ]
 
@@ -546,7 +546,7 @@ def detail_blocks(evaluated: Evaluated, pictures: Mapping[str, tuple[bytes, str]
     return [
         FigureGrid([FigureBlock(*pictures[name], line) for name in shown]),
         Paragraph(FINDINGS.of_the_file()),
-        undefined_html(evaluated.found, _left_out(evaluated)),
+        undefined_table(evaluated.results, _left_out(evaluated)),
     ]
 
 

@@ -180,21 +180,21 @@ def _draw_marks(axis: Any, unit: UnitLife, *, named: bool) -> None:
 PICTURES, DEBRIS, FIVE, WITH_HISTORY = "pictures", "oil debris", "five indicators", "NA4 and NB4"
 
 
-def watches(found: Inspections) -> dict[str, Watch]:
+def watches(fleet: Inspections) -> dict[str, Watch]:
     """Return what shows damage: pictures from their first pit on, the others by their limits."""
-    whole = found.worst_shares[:, 0] == 0.0
-    five = np.concatenate(list(found.indicators.values()), axis=1)
+    whole = fleet.worst_shares[:, 0] == 0.0
+    five = np.concatenate(list(fleet.indicators.values()), axis=1)
     of = {
-        DEBRIS: found.debris_mg,
-        FIVE: rise(five, found.specimen, whole),
-        WITH_HISTORY: rise(found.history, found.specimen, whole),
+        DEBRIS: fleet.debris_mg,
+        FIVE: rise(five, fleet.specimen, whole),
+        WITH_HISTORY: rise(fleet.history, fleet.specimen, whole),
     }
     seen = {
-        int(unit): int(np.flatnonzero((found.specimen == unit) & ~whole)[0])
-        for unit in np.unique(found.specimen[~whole])
+        int(unit): int(np.flatnonzero((fleet.specimen == unit) & ~whole)[0])
+        for unit in np.unique(fleet.specimen[~whole])
     }
     pictures = Watch(np.where(whole, 0.0, 1.0), seen)
-    return {PICTURES: pictures, **{name: watched(index, found.specimen, whole) for name, index in of.items()}}
+    return {PICTURES: pictures, **{name: watched(index, fleet.specimen, whole) for name, index in of.items()}}
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,24 +222,24 @@ class FailureDetection:
         return {**counts, **{name: value if np.isfinite(value) else None for name, value in medians.items()}}
 
 
-def detections(found: Inspections, seen: Mapping[str, Watch]) -> dict[str, FailureDetection]:
+def detections(fleet: Inspections, seen: Mapping[str, Watch]) -> dict[str, FailureDetection]:
     """Return what each watch detects of the gearboxes that failed."""
-    failed = set(np.unique(found.specimen[np.isfinite(found.rul_h)]).tolist())
-    return {name: _detection(found, one, failed) for name, one in seen.items()}
+    failed = set(np.unique(fleet.specimen[np.isfinite(fleet.rul_h)]).tolist())
+    return {name: _detection(fleet, watch, failed) for name, watch in seen.items()}
 
 
-def _detection(found: Inspections, watch: Watch, failed: set[int]) -> FailureDetection:
+def _detection(fleet: Inspections, watch: Watch, failed: set[int]) -> FailureDetection:
     rows = np.array([row for unit, row in watch.detected.items() if unit in failed], dtype=int)
-    pitted = found.worst_shares[rows, 0] > 0.0
+    pitted = fleet.worst_shares[rows, 0] > 0.0
     right = rows[pitted]
-    share, left_h = found.worst_shares[right, 0], found.rul_h[right]
+    share, left_h = fleet.worst_shares[right, 0], fleet.rul_h[right]
     medians = (float(np.median(values)) if right.size else float("nan") for values in (share, left_h))
     return FailureDetection(len(failed), int(right.size), int((~pitted).sum()), *medians)
 
 
 def unit_lives(
     dataset: Dataset,
-    found: Inspections,
+    fleet: Inspections,
     seen: Mapping[str, Watch],
     predicted: Mapping[str, np.ndarray],
     chosen: Sequence[int],
@@ -247,42 +247,42 @@ def unit_lives(
     """Return some gearboxes for figures; of predictions those that indicators with their history and the truth give."""
     units = {row["specimen_id"]: row for row in dataset.life("units").to_pylist()}
     shown = {name: values for name, values in predicted.items() if name in (HISTORY, OUTLOOK)}
-    return {unit: _unit_life(dataset, found, seen, shown, units[unit]) for unit in chosen}
+    return {unit: _unit_life(dataset, fleet, seen, shown, units[unit]) for unit in chosen}
 
 
 def _unit_life(
     dataset: Dataset,
-    found: Inspections,
+    fleet: Inspections,
     seen: Mapping[str, Watch],
     predicted: Mapping[str, np.ndarray],
     row: Mapping[str, object],
 ) -> UnitLife:
     unit = int(str(row["specimen_id"]))
-    own = np.flatnonzero(found.specimen == unit)
-    at = {name: found.age_h[one.detected[unit]] if unit in one.detected else np.nan for name, one in seen.items()}
+    rows = np.flatnonzero(fleet.specimen == unit)
+    at = {name: fleet.age_h[one.detected[unit]] if unit in one.detected else np.nan for name, one in seen.items()}
     ends = {"first pit": "first_pit_h", "rated": "rated_h"}
     marks = {name: float(str(row[column])) for name, column in ends.items()}
     ended = "failed" if row["event"] == "failed" else "taken out"
     observed_h = float(str(row["observed_h"]))
     return UnitLife(
         specimen=unit,
-        age_h=found.age_h[own],
-        watches={name: (one.index[own], float(at[name])) for name, one in seen.items() if name != PICTURES},
+        age_h=fleet.age_h[rows],
+        watches={name: (one.index[rows], float(at[name])) for name, one in seen.items() if name != PICTURES},
         marks_h={**{name: age for name, age in marks.items() if age < observed_h}, ended: observed_h},
-        pictures=_pictures(dataset, unit, str(row["end_gear"]), int(str(row["end_tooth"])), found),
+        pictures=_pictures(dataset, unit, str(row["end_gear"]), int(str(row["end_tooth"])), fleet),
         end_h=float(str(row["failure_h"])),
-        predicted_h={name: values[own] for name, values in predicted.items()},
+        predicted_h={name: values[rows] for name, values in predicted.items()},
     )
 
 
-def _pictures(dataset: Dataset, unit: int, gear: str, tooth: int, found: Inspections) -> list[FlankPicture]:
+def _pictures(dataset: Dataset, unit: int, gear: str, tooth: int, fleet: Inspections) -> list[FlankPicture]:
     """Return the pictures of one tooth in order of age; that of a whole flank stands for those before its first pit."""
     table, shares = dataset.life("pictures"), dataset.life("teeth")
-    own = table.filter(pc.equal(table.column("specimen_id"), unit)).to_pylist()
+    rows = table.filter(pc.equal(table.column("specimen_id"), unit)).to_pylist()
     of_teeth = shares.filter(pc.equal(shares.column("specimen_id"), unit)).to_pylist()
     share = {(row["inspection"], row["gear"], row["tooth"]): row["area_share"] for row in of_teeth}
-    ages_h = dict(zip(found.record_id.tolist(), found.age_h.tolist(), strict=True))
-    wanted = [row for row in own if row["gear"] == gear and (row["inspection"] == 0 or row["tooth"] == tooth)]
+    ages_h = dict(zip(fleet.record_id.tolist(), fleet.age_h.tolist(), strict=True))
+    wanted = [row for row in rows if row["gear"] == gear and (row["inspection"] == 0 or row["tooth"] == tooth)]
     return [
         FlankPicture(ages_h[row["record_id"]], share.get((row["inspection"], gear, tooth), 0.0), row["png"])
         for row in sorted(wanted, key=lambda one: one["inspection"])
@@ -299,11 +299,11 @@ LIVES = Sentences(
 )
 
 
-def shown_gearboxes(found: Inspections) -> list[int]:
+def shown_gearboxes(fleet: Inspections) -> list[int]:
     """Return the gearboxes that failed first, in the middle and last."""
-    known = np.isfinite(found.rul_h)
-    units, first = np.unique(found.specimen[known], return_index=True)
-    order = units[np.argsort((found.age_h + found.rul_h)[known][first], kind="stable")]
+    known = np.isfinite(fleet.rul_h)
+    units, first = np.unique(fleet.specimen[known], return_index=True)
+    order = units[np.argsort((fleet.age_h + fleet.rul_h)[known][first], kind="stable")]
     return list(dict.fromkeys(int(order[place]) for place in (0, order.size // 2, order.size - 1)))
 
 
@@ -345,14 +345,14 @@ def of_records(dataset: Dataset, record_ids: Sequence[int]) -> list[dict[str, fl
 def figure_of(dataset: Dataset, table: RecordTable) -> Callable[[int], dict[str, str]] | None:
     """Return what draws a gearbox over its life, with its caption; None where too few failed to learn from."""
     try:
-        found = inspections_of(dataset, table)
+        fleet = inspections_of(dataset, table)
     except DatasetError:
         return None
-    predicted = {HISTORY: history_predictions(found, SEED), OUTLOOK: found.outlook_h}
-    seen = watches(found)
+    predicted = {HISTORY: history_predictions(fleet, SEED), OUTLOOK: fleet.outlook_h}
+    seen = watches(fleet)
 
     def figure(gearbox: int) -> dict[str, str]:
-        (life,) = unit_lives(dataset, found, seen, predicted, [gearbox]).values()
+        (life,) = unit_lives(dataset, fleet, seen, predicted, [gearbox]).values()
         with styled():
             return {"png": base64.b64encode(png_bytes(life_figure(life))).decode("ascii"), "caption": LIVES.life()}
 
@@ -386,28 +386,28 @@ def write_life_report(
         If fewer than four gearboxes failed.
     """
     require_packages("the report", "sklearn", "matplotlib")
-    found = inspections(dataset, stage)
+    fleet = inspections(dataset, stage)
     with stage("baselines", 1) as advance:
-        left_out = _left_out(found, wanted=network)
-        predicted = baseline_predictions(found, seed, network=not left_out)
-        leaks = life_leaks(found, seed)
+        left_out = _left_out(fleet, wanted=network)
+        predicted = baseline_predictions(fleet, seed, network=not left_out)
+        leaks = life_leaks(fleet, seed)
         advance()
-    seen = watches(found)
+    seen = watches(fleet)
     scores = {
-        name: life_scores(found.rul_h, values, found.specimen, found.median_life_h, seed)
+        name: life_scores(fleet.rul_h, values, fleet.specimen, fleet.median_life_h, seed)
         for name, values in predicted.items()
     }
     baselines = {name: one.numbers() for name, one in scores.items()}
-    facts = _facts(found)
+    facts = _facts(fleet)
     metrics = {"seed": seed, **facts, "baselines": baselines, "leaks": [leak.numbers() for leak in leaks]}
-    detected = detections(found, seen)
+    detected = detections(fleet, seen)
     metrics["first_detection"] = {name: one.numbers() for name, one in detected.items()}
     text = json.dumps(metrics, indent=1, allow_nan=False)
     write_file(folder / "metrics.json", f"{text}\n")
     identity = str(dataset.manifest["identity"])
-    write_predictions([_predicted_rows(name, found, values) for name, values in predicted.items()], identity, folder)
+    write_predictions([_predicted_rows(name, fleet, values) for name, values in predicted.items()], identity, folder)
     page = folder / PAGE
-    first, *lives = unit_lives(dataset, found, seen, predicted, shown_gearboxes(found)).values()
+    first, *lives = unit_lives(dataset, fleet, seen, predicted, shown_gearboxes(fleet)).values()
     look = set_look(dataset, LookOptions(), stage, lives_of)
     parts: list[Block] = [
         *(Heading("Records"), RecordsPlace(), Heading("Remaining life")),
@@ -420,7 +420,7 @@ def write_life_report(
             )
         ),
         *note_blocks([left_out] if left_out else []),
-        *(_errors(found, scores), _quantiles(scores), Heading("First detection"), detection_table(detected)),
+        *(_errors(fleet, scores), _quantiles(scores), Heading("First detection"), detection_table(detected)),
         *(FigureGrid([life_block(one) for one in lives]), Heading("Leaks"), _leaks(leaks)),
     ]
     opening = Opening(_answer(facts, scores, detected), life_block(first))
@@ -428,30 +428,30 @@ def write_life_report(
     return page
 
 
-def _left_out(found: Inspections, *, wanted: bool) -> str:
+def _left_out(fleet: Inspections, *, wanted: bool) -> str:
     """Return why no network is trained, or an empty text."""
     if not wanted:
         return "No sequence network: --no-cnn."
     if missing_packages("torch"):
         return f"No sequence network: PyTorch is not installed: {how_to_install('cnn')}."
-    return "" if found.averages else "No sequence network: records hold fewer than two whole turns of the first shaft."
+    return "" if fleet.averages else "No sequence network: records hold fewer than two whole turns of the first shaft."
 
 
-def _predicted_rows(name: str, found: Inspections, predicted_h: np.ndarray) -> pa.Table:
+def _predicted_rows(name: str, fleet: Inspections, predicted_h: np.ndarray) -> pa.Table:
     """Return what a baseline says of the inspections of all splits; lives are never below 0."""
     quantiles = dict(zip(COLUMNS, np.maximum(predicted_h, 0.0).T, strict=True))
-    names = {CLASSIFIER: [name] * found.record_id.size, SPLIT: found.split}
-    return pa.table({**names, RECORD: pa.array(found.record_id, pa.int64()), **quantiles})
+    names = {CLASSIFIER: [name] * fleet.record_id.size, SPLIT: fleet.split}
+    return pa.table({**names, RECORD: pa.array(fleet.record_id, pa.int64()), **quantiles})
 
 
-def _facts(found: Inspections) -> dict[str, object]:
+def _facts(fleet: Inspections) -> dict[str, object]:
     """Return what the scores were taken of."""
-    known, third = np.isfinite(found.rul_h), found.median_life_h / BINS
+    known, third = np.isfinite(fleet.rul_h), fleet.median_life_h / BINS
     return {
-        "gearboxes_judged": int(np.unique(found.specimen[known]).size),
-        "gearboxes_suspended": int(np.unique(found.specimen[~known]).size),
+        "gearboxes_judged": int(np.unique(fleet.specimen[known]).size),
+        "gearboxes_suspended": int(np.unique(fleet.specimen[~known]).size),
         "inspections_judged": int(known.sum()),
-        "median_life_h": found.median_life_h,
+        "median_life_h": fleet.median_life_h,
         "bins_h": [[0.0, third], [third, 2.0 * third], [2.0 * third, None]],
     }
 
@@ -478,8 +478,8 @@ def _answer(
     return [("What is found", found), ("How sure", LIVES.how_sure(sensed[best], facts))]
 
 
-def _errors(found: Inspections, scores: Mapping[str, LifeScores]) -> TableBlock:
-    third = found.median_life_h / BINS
+def _errors(fleet: Inspections, scores: Mapping[str, LifeScores]) -> TableBlock:
+    third = fleet.median_life_h / BINS
     bins = ("all", f"below {third:.3g} h", f"{third:.3g} to {2 * third:.3g} h", f"from {2 * third:.3g} h")
     rows = [(name, *one.rmse_h, *one.mae_h) for name, one in scores.items()]
     head = ["What is known", *(f"{error} [h], {each}" for error in ("RMSE", "MAE") for each in bins)]

@@ -24,7 +24,6 @@ from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.ranking_table import IndicatorTable, ranking_table
 from diagnostics.indicators.table import RecordTable
 from diagnostics.judging.alarms import Detectors, judged_detectors, with_networks
-from diagnostics.judging.judgement import TITLES
 from diagnostics.judging.of_split import NetworkOptions, Training, train_models, training_metrics
 from diagnostics.judging.sets import OtherSet, checked_table, measured_table, other_table
 from diagnostics.page.provenance import without_path
@@ -140,7 +139,7 @@ def write_report(
     if training is not None:
         detectors = with_networks(detectors, matrix, training, seed)
     known = set(matrix.names)
-    found = by_strength(result.separability for result in judged.found if result.column in known)
+    separabilities = by_strength(result.separability for result in judged.results if result.column in known)
     classes = ordered_states(matrix.labels)
     with stage("figures", 1) as advance, styled():
         drawing = draw(dataset, matrix, classes, training)
@@ -155,7 +154,7 @@ def write_report(
     meaning = meaning_of_scores(dataset.config, scored=training is not None)
     told = [scores_sentence(training), comparison_sentence(training), trust_sentence(training)] if training else []
     sentences = [*(text for _, text in answer), meaning, *told, hardest_sentence(judged), audit]
-    metrics = report_metrics(dataset, table, seed, sentences, training, found, drawing.notes)
+    metrics = report_metrics(dataset, table, seed, sentences, training, separabilities, drawing.notes)
     metrics["headline"] = " ".join([*own_ranks(judged), ANSWERS.first_answer(detectors).replace("**", "")])
     metrics["detectors"] = {
         side: {family: detector.numbers() for family, detector in getattr(detectors, side).items()}
@@ -165,7 +164,7 @@ def write_report(
     metrics["yours"] = yours.numbers() if yours else None
     write_file(folder / "metrics.json", json.dumps(metrics, indent=1, allow_nan=False) + "\n")
     look = _look(dataset, records, judged, folder / "models" if training else None, page, own, stage)
-    reported = Reported(dataset, seed, matrix, training, found, detectors, audit, drawing, judged, look, yours)
+    reported = Reported(dataset, seed, matrix, training, separabilities, detectors, audit, drawing, judged, look, yours)
     path = folder / "report.html"
     with stage("page", 1):
         drawn = {**opening, **drawing.figures(), **in_detail}
@@ -225,18 +224,15 @@ def _scored(dataset: Dataset, page: PageOptions, models: Path | None, options: N
 def with_kinds(matrix: FeatureMatrix, dataset: Dataset) -> FeatureMatrix:
     """Return the matrix with the labels that set damage through the face and shams apart, where the set has them."""
     present = [name for name in KINDS if name in dataset.labels().column_names]
-    found = dataset.labels(columns=["record_id", *present]).to_pylist()
-    by_record = {row["record_id"]: row for row in found}
+    by_record = {row["record_id"]: row for row in dataset.labels(columns=["record_id", *present]).to_pylist()}
     rows = [by_record[record] for record in matrix.labels["record_id"].tolist()]
     more = {name: np.array([bool(row[name]) for row in rows]) for name in present}
     return replace(matrix, labels={**matrix.labels, **more})
 
 
 def _write_pictures(folder: Path, figures: dict[str, tuple[Figure, str]]) -> dict[str, tuple[bytes, str]]:
-    """Write all figures and return them with their captions; those that an earlier run alone had are removed."""
+    """Write all figures and return them with their captions."""
     pictures = {name: (png_bytes(figure), caption) for name, (figure, caption) in figures.items()}
-    for name in TITLES:  # matrices are tables now
-        (folder / "figures" / f"confusion_{name}.png").unlink(missing_ok=True)
     for name, (png, _) in pictures.items():
         write_file(folder / "figures" / f"{name}.png", png)
     return pictures
@@ -298,7 +294,7 @@ def report_metrics(
     seed: int,
     sentences: list[str],
     training: Training | None,
-    found: list[Separability],
+    separabilities: list[Separability],
     notes: list[str],
 ) -> dict[str, Any]:
     """Return the content of `metrics.json`; undefined numbers are null."""
@@ -312,7 +308,7 @@ def report_metrics(
         "notes": notes,
         "feature_settings": {name: getattr(settings, name) for name in type(settings).__dataclass_fields__},
         "training": training_metrics(training) if training else None,
-        "separability": {"specimens": "all", "features": [_entry(entry) for entry in found]},
+        "separability": {"specimens": "all", "features": [_entry(entry) for entry in separabilities]},
     }
 
 

@@ -51,12 +51,12 @@ from diagnostics.report.classifier_tables import (
 from diagnostics.report.drawing import Drawing
 from diagnostics.report.indicators import (
     Evaluated,
-    definition_html,
     detail_blocks,
     evaluation_notes,
     hardest_sentence,
     own_ranks,
     ranking_blocks,
+    term_table,
 )
 from diagnostics.report.sentences import (
     CLASSIFIERS,
@@ -86,7 +86,9 @@ CAPTION = (
 def wrong_records_table(training: Training, matrix: FeatureMatrix) -> TableBlock:
     """Return the test records that some classifier names wrongly, with what each says; nothing where none does."""
     labels = matrix.rows(training.split.test).labels
-    said = {found.name: np.array(found.predictions.classes)[found.predictions.predicted] for found in training.judged}
+    said = {
+        judged.name: np.array(judged.predictions.classes)[judged.predictions.predicted] for judged in training.judged
+    }
     wrong = np.stack([names != labels[CLASS] for names in said.values()])
     rows = np.flatnonzero(wrong.any(axis=0))
     order = rows[np.argsort(-wrong[:, rows].sum(axis=0), kind="stable")][:MOST_RECORDS]
@@ -113,7 +115,7 @@ class Reported:
     seed: int
     matrix: FeatureMatrix
     training: Training | None
-    found: list[Separability]
+    separabilities: list[Separability]
     detectors: Detectors
     audit: str
     drawing: Drawing
@@ -145,8 +147,8 @@ def _answer(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> Op
     figure = next((pictures[name] for name in (FIRST, ANSWER) if name in pictures), None)
     shown = FigureBlock(*figure, RecordLinks("Records", state_links(states))) if figure else None
     sure = ANSWERS.first_certainty(detectors, error_free=is_error_free(reported.dataset.config), audit=reported.audit)
-    own = own_ranks(reported.evaluated)
-    asked = [("Your indicators" if len(own) > 1 else "Your indicator", " ".join(own))] if own else []
+    ranks = own_ranks(reported.evaluated)
+    asked = [("Your indicators" if len(ranks) > 1 else "Your indicator", " ".join(ranks))] if ranks else []
     said = [*asked, ("What is found", ANSWERS.first_answer(detectors)), ("How sure", sure)]
     return Opening(said, shown)
 
@@ -179,7 +181,7 @@ def _sections(reported: Reported, pictures: Mapping[str, tuple[bytes, str]]) -> 
         "Your predictions": your_scores(reported.yours),
         "Records named wrongly": _named(reported),
         "Damage": [grid(drawing.damage)],
-        "Definitions of the indicators": [definition_html({channel.quantity for channel in reported.dataset.channels})],
+        "Definitions of the indicators": [term_table({channel.quantity for channel in reported.dataset.channels})],
         "Notes": note_blocks(list(dict.fromkeys(notes))),
     }
 
@@ -195,7 +197,7 @@ def _limits(reported: Reported) -> list[Block]:
     trained = reported.training
     sentences = [meaning_of_scores(reported.dataset.config, scored=trained is not None)]
     sentences += [trust_sentence(trained)] if trained else []
-    sentences += [hardest_sentence(reported.evaluated), area_sentence(reported.found), reported.audit]
+    sentences += [hardest_sentence(reported.evaluated), area_sentence(reported.separabilities), reported.audit]
     return [Paragraph(sentence) for sentence in sentences if sentence]
 
 
@@ -219,8 +221,8 @@ def _named(reported: Reported) -> list[Block]:
     if training is None:
         return []
     matrices = [
-        confusion_table(found.scores, TITLES[found.name], kind=training.split.kind, linked=place == 0)
-        for place, found in enumerate(training.judged)
+        confusion_table(judged.scores, TITLES[judged.name], kind=training.split.kind, linked=place == 0)
+        for place, judged in enumerate(training.judged)
     ]
     wrong = wrong_records_table(training, reported.matrix)
     return [FigureGrid(matrices), wrong]

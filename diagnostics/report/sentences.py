@@ -67,14 +67,14 @@ def trust_sentence(training: Training) -> str:
 def control_sentence(training: Training) -> str:
     """Say what training on permuted labels gave, and whether that is chance; nothing where it was not run."""
     areas = {TITLES[one.name]: one.permuted_auroc[np.isfinite(one.permuted_auroc)] for one in training.judged}
-    permuted = {title: found for title, found in areas.items() if found.size}
+    permuted = {title: area for title, area in areas.items() if area.size}
     runs = {TITLES[one.name]: one.permuted_auroc.size for one in training.judged}
-    off = {title for title, found in permuted.items() if abs(found.mean() - 0.5) > CHANCE_MARGIN}
+    off = {title for title, area in permuted.items() if abs(area.mean() - 0.5) > CHANCE_MARGIN}
     return CLASSIFIERS.control(permuted, [title for title in permuted if title in off and runs[title] > 1])
 
 
-def area_sentence(found: list[Separability]) -> str:
+def area_sentence(separabilities: list[Separability]) -> str:
     """Say which single indicator follows the damaged area best; nothing where none is defined."""
-    followed = [entry for entry in found if math.isfinite(entry.spearman.value)]
+    followed = [entry for entry in separabilities if math.isfinite(entry.spearman.value)]
     best = max(followed, key=lambda entry: abs(entry.spearman.value), default=None)
     return FINDINGS.follows_area(best) if best else ""

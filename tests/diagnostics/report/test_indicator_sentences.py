@@ -11,7 +11,7 @@ import pytest
 from diagnostics.page.blocks import Page
 from diagnostics.page.template import page_html
 from diagnostics.records.gear_train import PAIR
-from diagnostics.report.indicators import best_by_state, indicator_findings, own_ranks, undefined_html
+from diagnostics.report.indicators import best_by_state, indicator_findings, own_ranks, undefined_table
 from diagnostics.statistics.evaluation import UNDEFINED, Interval
 from diagnostics.statistics.indicator_statistics import IndicatorResult, StateResult
 
@@ -68,13 +68,13 @@ def test_few_specimens_are_told_how_many_a_correction_takes() -> None:
 def test_an_own_indicator_is_told_its_rank_by_its_best_channel_and_none_without_damage() -> None:
     rises, mine = result("rms", {"slight": state(0.8)}), result("crest", {"slight": state(0.7)})
     worse = replace(mine, column="crest__y", channel="y")
-    found = SimpleNamespace(found=[rises, mine, worse], records=SimpleNamespace(states=("slight",)))
+    found = SimpleNamespace(results=[rises, mine, worse], records=SimpleNamespace(states=("slight",)))
     (said,) = own_ranks(found)
     assert said.startswith("Your indicator crest at x has rank 2 of 3 columns")
     assert "AUC over the states 0.70 (0.60 to 0.90), 0.5 is chance." in said
-    assert own_ranks(SimpleNamespace(found=[mine], records=SimpleNamespace(states=()))) == []
+    assert own_ranks(SimpleNamespace(results=[mine], records=SimpleNamespace(states=()))) == []
     mine.score_others = UNDEFINED
-    (said,) = own_ranks(SimpleNamespace(found=[mine], records=SimpleNamespace(states=("slight",))))
+    (said,) = own_ranks(SimpleNamespace(results=[mine], records=SimpleNamespace(states=("slight",))))
     assert "has no rank" in said
     assert "nan" not in said
 
@@ -107,7 +107,7 @@ def test_sets_that_allow_no_finding(states: tuple[str, ...], specimens: int, tex
 def test_indicators_that_lack_only_records_that_were_left_out_are_not_called_undefined() -> None:
     found = [result("rms", {"slight": state(0.9)}), result("fm4", {"slight": state(0.9)})]
     found[1].defined_share = 0.7
-    page = page_html(Page("x", [undefined_html(found, {"x": 0.1})]))  # both lack a tenth; fm4 lacks two more
+    page = page_html(Page("x", [undefined_table(found, {"x": 0.1})]))  # both lack a tenth; fm4 lacks two more
     assert "rms__x" not in page
     assert "<td>20.0</td>" in page
-    assert not undefined_html(found[:1], {"x": 0.1})
+    assert not undefined_table(found[:1], {"x": 0.1})
