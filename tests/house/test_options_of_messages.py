@@ -13,7 +13,7 @@ import pytest
 from diagnostics.cli.check import _in_words_of_check
 from tests.every_command import COMMANDS, LEAVES
 from tests.house.reachable import Code, executed
-from tests.house.source_tree import modules
+from tests.house.source_tree import ROOT, modules
 
 OPTION = re.compile(r"(?<![\w-])(?<!var\()--[a-z][a-z-]*[a-z](?![\w-]*:\S)")
 """Not the colours of a style sheet, `--ink:#123456` and `var(--ink)`."""
@@ -31,6 +31,7 @@ OPTIONS = {
     for name, command in COMMANDS.items()
 }
 NAMES = sorted({*LEAVES, *(f"`{name.partition(' ')[2]}" for name in LEAVES)}, key=len, reverse=True)
+TEMPLATES = {file.name: file.read_text(encoding="utf-8") for file in ROOT.glob("diagnostics/*/templates/*")}
 NAMED = re.compile(rf"({'|'.join(map(re.escape, NAMES))})(?![\w-])")
 
 
@@ -53,7 +54,7 @@ def printing() -> dict[str, set[str]]:
 
 
 def texts(node: ast.AST) -> Iterator[str]:
-    """Yield the texts of a node, of a formatted one with {} where values come."""
+    """Yield the texts of a node, of a formatted one with {} where values come; of a template it names, its parts."""
     inside: set[int] = set()
     for part in executed(node, annotations=True):
         if isinstance(part, ast.JoinedStr):
@@ -61,6 +62,7 @@ def texts(node: ast.AST) -> Iterator[str]:
             yield "".join(value.value if isinstance(value, ast.Constant) else "{}" for value in part.values)
         elif isinstance(part, ast.Constant) and isinstance(part.value, str) and id(part) not in inside:
             yield part.value
+            yield from TEMPLATES.get(part.value, "").split("\n\n")
 
 
 def strangers(text: str, printed_by: set[str]) -> list[str]:
