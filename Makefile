@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-EXTRAS := diagnostics,cnn,recordings,mdf,notebooks,dev
+EXTRAS := diagnostics,cnn,recordings,mdf,dev
 DEMO := runs/quickstart
 # TARGETS only exists after an install that was complete; a change of the pins installs again.
 STAMP := $(VENV)/.installed
@@ -57,8 +57,8 @@ reference: $(STAMP)
 	for page in yaml:yaml command:commands column:columns python:python; do \
 		$(BIN)/python docs/scripts/$${page%%:*}_reference.py > docs/reference/$${page##*:}.md || exit 1; \
 	done
+	$(BIN)/python docs/scripts/gallery.py > docs/start/gallery.md
 
-# Executes the notebooks, four minutes of CPU time, unless copies of this code are kept in runs/notebooks.
 # NO_MKDOCS_2_WARNING silences the note that the theme is maintained until May 2027; its successor reads mkdocs.yml too.
 docs: $(VENV)/.documented
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict

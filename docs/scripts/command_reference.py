@@ -27,14 +27,14 @@ HEAD = """# Commands
 
 `siggen COMMAND -h` says more: meanings in full, limits of numbers, further examples. `make reference` prints this page.
 
-exit code | meaning
---- | ---
-0 | done
-1 | unexpected error; run again with `SIGGEN_TRACEBACK=1` for details
-2 | wrong usage or configuration
-3 | some records failed: the set is usable and the manifest names them, unless `--allowed-loss` stopped the run
-4 | `verify` found a difference, `check` a change, `audit --strict` a trap or too few gearboxes
-130 | interrupted; the same command goes on where it stopped
+exit code|meaning
+---|---
+0|done
+1|unexpected error; run again with `SIGGEN_TRACEBACK=1` for details
+2|wrong usage or configuration
+3|some records failed: the set is usable and the manifest names them, unless `--allowed-loss` stopped the run
+4|`verify` found a difference, `check` a change, `audit --strict` a trap or too few gearboxes
+130|interrupted; the same command goes on where it stopped
 """
 
 
@@ -64,7 +64,7 @@ def row(option: str, meaning: str, fact: str) -> str:
     """Return the line of an option; of a default and a range the default alone."""
     default = re.search(r"default: ([^;]+)", fact)
     ending = f" ({default[1]})" if default else " (required)" if "required" in fact and option.startswith("-") else ""
-    return f"`{option.replace('|', chr(92) + '|')}` | {sentence(meaning)}{ending}"
+    return f"`{option.replace('|', chr(92) + '|')}`|{sentence(meaning)}{ending}"
 
 
 def shared(text: str) -> dict[str, tuple[str, str]]:
@@ -95,7 +95,7 @@ def table(found: Iterable[tuple[str, str, str]], options: Mapping[str, tuple[str
     known = [options.get(option, ("",))[0] == meaning or name(option) in ALIKE for option, meaning, _ in lines]
     own = [row(*line) for line, is_known in zip(lines, known, strict=True) if not is_known]
     if own:
-        yield "\n".join(["option | meaning", "--- | ---", *own, ""])
+        yield "\n".join(["option|meaning", "---|---", *own, ""])
     if any(known):
         names = [f"`{name(line[0])}`" for line, is_known in zip(lines, known, strict=True) if is_known]
         yield f"[Further](#options-of-several-commands): {', '.join(names)}\n"
@@ -109,7 +109,7 @@ def page() -> str:
     for program, text in texts.items():
         parts += [f"## `{program}`\n", *commands(text, options)]
     rows = [row(option, *told) for option, told in sorted(options.items())]
-    return "\n".join([*parts, "## Options of several commands\n", "option | meaning", "--- | ---", *rows])
+    return "\n".join([*parts, "## Options of several commands\n", "option|meaning", "---|---", *rows])
 
 
 if __name__ == "__main__":

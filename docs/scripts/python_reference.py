@@ -44,7 +44,7 @@ record = siggen.run(gearbox, speed_hz=25, torque_nm=40)
 record.spectrum().plot()
 ```
 """
-TABLE = "name | what it is or does | has\n--- | --- | ---"
+TABLE = "name|what it is or does|has\n---|---|---"
 
 DIAGNOSTICS = {
     "## diagnostics\n\n`import diagnostics` loads nothing. An example: "
@@ -96,7 +96,7 @@ def row(name: str, node: ast.FunctionDef | ast.ClassDef) -> str:
     """Return the line of a name: its call, its first sentence, and of a class what it has."""
     shown = f"`{name}{called(node)}`" if "`" not in name else name
     has = ", ".join(f"`{one}`" for one in members(node)) if isinstance(node, ast.ClassDef) else ""
-    return " | ".join([shown, first_sentence(ast.get_docstring(node) or ""), *([has] if has else [])])
+    return "|".join([shown, first_sentence(ast.get_docstring(node) or ""), *([has] if has else [])])
 
 
 def called(node: ast.FunctionDef | ast.ClassDef) -> str:

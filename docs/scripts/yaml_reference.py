@@ -24,8 +24,8 @@ HEAD = """# Keys of the YAML file
 
 Begin with [the twenty keys that matter](twenty_keys.md). `make reference` prints this page from the JSON Schema that `siggen init` writes.
 
-* **Number**, or a limit alone, may be a constant or a [range](#ranges) such as `[1, 2]`, drawn once per gearbox.
-* The default stands last, in brackets; without brackets a key is required wherever its section stands.
+* **x** is a number or a [range](#ranges) such as `[1, 2]`, drawn once per gearbox; **c** is a number alone, **n** a whole one.
+* A key without a default is required wherever its section stands.
 * The end of a key is its unit: `_mm`, `_um` (µm), `_deg` and `_gpa` for gears, SI for the rest; `n_s_per_m` is N s/m.
 * `a.b` is key `b` in section `a`; `a[].b` of every entry of the list `a`, `a.NAME.b` of every name. On the command line: `--set a.b=VALUE`,
   `--set a.0.b=VALUE` for the first entry, `--set states.severe.b=VALUE`.
@@ -94,15 +94,15 @@ def digits(value: float) -> str:
     return str(value) if isinstance(value, int) else f"{value:.6g}"
 
 
-def limits(schema: Mapping[str, Any]) -> str:
-    """Return the range of a number in signs, or nothing."""
+def limits(schema: Mapping[str, Any], letter: str) -> str:
+    """Return the range of a number in signs, or its letter alone."""
     low, high = (
         [(sign, digits(schema[key])) for key, sign in signs.items() if key in schema]
         for signs in ({"exclusiveMinimum": "<", "minimum": "≤"}, {"exclusiveMaximum": "<", "maximum": "≤"})
     )
     if high and "9223372036854775808" not in high[0][1]:
-        return f"{low[0][1]}{low[0][0]}x{high[0][0]}{high[0][1]}" if low else "".join(high[0])
-    return f"{low[0][0].replace('<', '>').replace('≤', '≥')}{low[0][1]}" if low else ""
+        return f"{low[0][1]}{low[0][0]}{letter}{high[0][0]}{high[0][1]}" if low else letter + "".join(high[0])
+    return f"{letter}{low[0][0].replace('<', '>').replace('≤', '≥')}{low[0][1]}" if low else letter
 
 
 def allowed(schema: Schema, value: Mapping[str, Any]) -> str:
@@ -123,11 +123,12 @@ def allowed(schema: Schema, value: Mapping[str, Any]) -> str:
         return f"{text} or a list of them" if any(items in alternatives for items in listed) else text
     if value.get("type") == "array":
         return listing(schema, value)
-    words = {"integer": "integer", "number": "number", "string": "text", "null": "`null`", "boolean": "yes or no"}
+    words = {"string": "text", "null": "`null`", "boolean": "yes or no"}
     words["object"] = (
         "sections by name" if isinstance(value.get("additionalProperties"), Mapping) else "mapping of keys"
     )
-    return f"{words[value['type']]} {limits(value)}".strip()
+    letter = {"integer": "n", "number": "c"}.get(value["type"])
+    return limits(value, letter) if letter else words[value["type"]]
 
 
 def several(schema: Schema, alternatives: list[Mapping[str, Any]]) -> str:
@@ -137,7 +138,7 @@ def several(schema: Schema, alternatives: list[Mapping[str, Any]]) -> str:
     found = []
     for part in rest:
         if drawn and part.get("type") == "number":
-            found.append(f"Number {limits(part)}".strip())
+            found.append(limits(part, "x"))
         else:
             found.append(allowed(schema, part))
     if found.count("section") > 1:  # told apart by the keys that they need
@@ -154,7 +155,7 @@ def listing(schema: Schema, value: Mapping[str, Any]) -> str:
     if "prefixItems" in value:
         return f"list of {len(value['prefixItems'])} numbers"
     if value.get("minItems") == value.get("maxItems") is not None:
-        return f"list of {value['minItems']}, each a {allowed(schema, value['items'])}"
+        return f"list of {value['minItems']}, each {allowed(schema, value['items'])}"
     least = f" ≥{value['minItems']}" if value.get("minItems") else ""
     return f"list{least} of {allowed(schema, value['items'])}"
 
@@ -164,7 +165,7 @@ def default(key: Key) -> str:
     if key.required:
         return ""
     if "default" not in key.schema:
-        return "see meaning"
+        return ""
     value = key.schema["default"]
     if isinstance(value, dict) and value:
         return f"`{written_text(value)}`" if is_written_number(value) else SECTION_DEFAULT
@@ -175,7 +176,7 @@ def default(key: Key) -> str:
 
 def row(*cells: str) -> str:
     """Return a row of a Markdown table."""
-    return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
+    return f"|{'|'.join(cell.replace('|', chr(92) + '|') for cell in cells)}|"
 
 
 def described(schema: Schema, value: Mapping[str, Any]) -> str:
@@ -273,21 +274,18 @@ def listed(schema: Schema, entry: Entry) -> str | None:
         values = values.removesuffix(" or `null`")
     if (of := TAKEN_OVER.get(f"{first.path}.NAME")) is not None:
         values += f"; keys as in {' and '.join(f'`{one}`' for one in of)}, beside its own"
-    if re.fullmatch(r"Number \S+", values):
-        values = values.removeprefix("Number ")
-    ending = f" ({defaults})" if defaults else ""
-    return f"* {names}: {described(schema, first.schema)}. {values[:1].upper()}{values[1:]}{ending}"
+    return row(names, described(schema, first.schema), values, defaults)
 
 
 def listing_of(schema: Schema, rows: list[Entry]) -> Iterator[str]:
     """Yield the lines of a section, those of the same kinds together."""
     kinds = list(dict.fromkeys(tuple(entry.kinds) for entry in rows))
     for group in kinds:
-        lines = [listed(schema, entry) for entry in rows if tuple(entry.kinds) == group]
-        if len(kinds) > 1:
+        lines = [line for entry in rows if tuple(entry.kinds) == group and (line := listed(schema, entry)) is not None]
+        if len(kinds) > 1 and lines:
             yield from (f"Kind {', '.join(group)}:" if group else "All kinds:", "")
-        yield from (line for line in lines if line is not None)
-        yield ""
+        if lines:
+            yield from (row("key", "meaning", "values", "default"), row("---", "---", "---", "---"), *lines, "")
 
 
 def page() -> str:
@@ -307,10 +305,10 @@ def page() -> str:
         text = described(schema, top.schema)
         listed = " A list; these are the keys of an entry." if top.schema.get("type") == "array" else ""
         listed = " By name; these are the keys of an entry." if "additionalProperties" in top.schema else listed
-        need = "Required." if top.required else "Optional."
+        need = " Required." if top.required else ""
         for number, rows in enumerate(tables):
             if number == 0:
-                lines += [f"## {top.path}", "", f"{text[:1].upper()}{text[1:]}. {need}{listed}", ""]
+                lines += [f"## {top.path}", "", f"{text[:1].upper()}{text[1:]}.{need}{listed}", ""]
             else:
                 place = rows[0].keys[0].path.rpartition(" (kind")[0]
                 place = re.sub(r" \(kind: \w+\)", "", place)

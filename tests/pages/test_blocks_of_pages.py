@@ -19,7 +19,6 @@ Followed = Callable[[Path, bool], str]
 INSTALLS = "not run: installs from the package index"
 NOT_RUN = {
     "README.md": ["not run: installs from the package index, and runs these tests"],
-    "docs/notebooks/README.md": ["not run: installs; the tests of notebooks and of the site run all of them"],
     "docs/start/cluster.md": [
         "not run: the keys are those of your store",
         "needs: distributed",
@@ -29,7 +28,6 @@ NOT_RUN = {
     ],
     "docs/start/demo.md": [INSTALLS],
     "docs/start/install.md": [INSTALLS, INSTALLS, INSTALLS, "not run: needs a container tool"],
-    "docs/start/load_a_set.md": ["needs: lightning"],
     "docs/understand/baselines.md": ["not run: the same commands run one by one below"],
     "docs/understand/run_to_failure.md": ["not run: minutes", "not run: minutes"],
     "docs/understand/siggen_bench.md": [

@@ -12,10 +12,8 @@ ELSEWHERE = re.compile(r"(?<![\w/.:-])(?:data|sets)/\w+")
 
 
 def test_no_example_has_its_set_elsewhere() -> None:
-    folders = ("siggen", "diagnostics", "docs", "configs")
-    pages = [
-        path for folder in folders for kind in ("py", "md", "ipynb") for path in (ROOT / folder).rglob(f"*.{kind}")
-    ]
+    folders = ("siggen", "diagnostics", "docs", "configs", "examples")
+    pages = [path for folder in folders for kind in ("py", "md") for path in (ROOT / folder).rglob(f"*.{kind}")]
     found = {}
     for path in (*pages, ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "Makefile"):
         lines = COMMAND.findall(path.read_text(encoding="utf-8"))
