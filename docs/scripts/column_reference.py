@@ -45,12 +45,10 @@ PLATES = "`housing.kind: plates`"
 SENSOR_PARTS = ("pink_noise", "mains")
 HEAD = """# Columns of a set
 
-This page is printed by `make reference` from the columns that siggen writes; the files carry the same texts as metadata
-(`unit`, `meaning`, `role`). `CHANNEL` stands for `SENSOR_AXIS`, such as `lid_vertical`. Of a pair the meaning
-is that of the pinion's. In brackets stand unit, type (double where a unit stands alone) and role. Above a list stands
-the section of the YAML file that brings its columns; every set has the first. Sets with numbers from files have besides
-`path_number_CHANNEL` (which file of its path a gearbox drew, from 0), `noise_spectrum_CHANNEL_m_s2` and
-`lines_CHANNEL_m_s2` (RMS).
+The files carry these texts as metadata (`unit`, `meaning`, `role`); `make reference` prints them. `CHANNEL` stands for
+`SENSOR_AXIS`, such as `lid_vertical`. Of a pair the meaning is that of the pinion's. In brackets stand unit, type
+(double where none stands) and role. Sets with numbers from files have besides `path_number_CHANNEL` and
+`noise_spectrum_CHANNEL_m_s2`.
 
 | role | what it is | may a classifier have it | may it tell the state |
 |---|---|---|---|
@@ -118,7 +116,7 @@ def rows(fields: Iterable[pa.Field], brought: Mapping[str, str], named: Iterable
         meaning = general(facts.get("meaning", "signal of the channel" if "sensor" in facts else ""), named)
         kind = re.sub(r"<element: (\w+)[^>]*>(\[\d+\])?", r" of \1", str(field.type)).replace("fixed_size_list", "list")
         unit = facts.get("unit", "")
-        known = (unit, "" if unit and kind == "double" else kind, facts["role"])
+        known = (unit, "" if kind == "double" else kind, facts["role"])
         line = f"* {shown}: {meaning} ({'; '.join(part for part in known if part)})"
         groups.setdefault(brought.get(field.name, ""), []).append(line)
     for needed, lines in groups.items():
@@ -167,10 +165,8 @@ def page() -> str:
             "",
             "## Internal quantities",
             "",
-            "In `internals/*.parquet`, where the YAML file has `internals`, as float32 series beside the ids of "
-            "the record.",
-            "`siggen show --internals` writes them for one record. The list shows those of `configs/quickstart.yaml`;",
-            "other models have other motions and places. `pair_k` is a pair of teeth in reach of contact, k = 0, 1 ...",
+            "In `internals/*.parquet`, with `internals` in the YAML file; of one record by `siggen show --internals`.",
+            "The list is that of `quickstart`. `pair_k` is a pair of teeth in reach of contact.",
             "",
             *internals(),
         )

@@ -11,7 +11,7 @@ from base64 import b64encode
 
 from gallery import EXAMPLES, ROOT, question
 from mkdocs.config.defaults import MkDocsConfig
-from mkdocs.structure.files import File, Files
+from mkdocs.structure.files import File, Files, InclusionLevel
 from mkdocs.structure.pages import Page
 
 LINK = re.compile(r"\]\((?:\.\./)+examples/(\w+)\.py\)")
@@ -26,8 +26,9 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
             f"# {asked}\n\n{said} [As a notebook]({path.stem}.ipynb).\n\n```python\n{source}```\n\n"
             f"![{asked}](../figures/examples/{path.stem}.png)\n"
         )
-        files.append(File.generated(config, f"examples/{path.stem}.md", content=text))
-        files.append(File.generated(config, f"examples/{path.stem}.ipynb", content=notebook(path.stem, source)))
+        place, apart = f"examples/{path.stem}", InclusionLevel.NOT_IN_NAV  # the gallery leads to them
+        files.append(File.generated(config, f"{place}.md", content=text, inclusion=apart))
+        files.append(File.generated(config, f"{place}.ipynb", content=notebook(path.stem, source)))
     return files
 
 

@@ -43,7 +43,7 @@ def page() -> str:
     for path in ordered():
         asked, said = question(path)
         parts.append(f"## {asked}\n\n{said} [`{path.stem}.py`](../../examples/{path.name})\n")
-        parts.append(f'<img src="../figures/examples/{path.stem}.png" width="560" alt="{asked}">\n')
+        parts.append(f'<img src="../figures/examples/{path.stem}.png" width="560" alt="{path.stem}">\n')
     return "\n".join(parts)
 
 

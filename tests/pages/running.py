@@ -22,7 +22,7 @@ from tests.command import script
 from tests.pages.blocks import ROOT, Block
 from tests.pages.printed import difference
 
-BESIDE = ("configs", "benchmarks", "docs", "tests")
+BESIDE = ("configs", "benchmarks", "docs", "tests", "examples")
 LEFT_OUT = shutil.ignore_patterns("*.html", "*.png", "__pycache__")
 DROPPED = ("PYTHONPATH", "VIRTUAL_ENV", "SIGGEN_TRACEBACK")
 SHELL = "set -eu -o pipefail\n"
@@ -32,7 +32,7 @@ def reader_folder(folder: Path, blocks: Sequence[Block]) -> Path:
     """Fill a folder with what a reader of the pages has beside the installed programs, as far as blocks name it."""
     text = "\n".join(block.source for block in blocks)
     # scripts of one folder import from the others
-    for name in BESIDE if re.search(r"\b(benchmarks|docs|tests)\b", text) else ("configs",):
+    for name in BESIDE if re.search(r"\b(benchmarks|docs|tests|examples)\b", text) else ("configs",):
         shutil.copytree(ROOT / name, folder / name, ignore=LEFT_OUT)
     for name in ("docs/figures", "runs"):
         (folder / name).mkdir(parents=True, exist_ok=True)

@@ -28,7 +28,6 @@ NOT_RUN = {
     ],
     "docs/start/demo.md": [INSTALLS],
     "docs/start/install.md": [INSTALLS, INSTALLS, INSTALLS, "not run: needs a container tool"],
-    "docs/understand/baselines.md": ["not run: the same commands run one by one below"],
     "docs/understand/run_to_failure.md": ["not run: minutes", "not run: minutes"],
     "docs/understand/siggen_bench.md": [
         "not run: simulates for minutes; tests/diagnostics/bench calls the same on short records"
