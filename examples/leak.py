@@ -17,7 +17,7 @@ config = siggen.load_config("quickstart", ["specimens=8", "duration_s=0.5"])
 siggen.generate(config, "runs/examples", workers=0)  # a finished set is taken as it is
 clean = diagnostics.table(siggen.open("runs/examples"))
 clean.labels["sham"] = clean.labels["state"] == "sham"  # judged apart
-offset = (clean.labels["state"] != "healthy") * 0.5 * np.nanstd(clean.values, axis=0)[:, None]  # somebody's mistake
+offset = (clean.labels["state"] != "healthy") * 1.0 * np.nanstd(clean.values, axis=0)[:, None]  # somebody's mistake
 leaky = replace(clean, values=clean.values + offset.T)
 model = make_pipeline(SimpleImputer(strategy="median"), StandardScaler(), LogisticRegression(C=0.01))
 
