@@ -12,6 +12,7 @@ from PIL import Image
 from tests.house.source_tree import ROOT
 from tests.pages.running import reader_environment
 
+pytestmark = pytest.mark.timeout(3600)  # one minute of CPU; a busy machine takes many
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 SCRIPT = ROOT / "docs" / "scripts" / "gallery.py"
 
