@@ -35,8 +35,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 def notebook(name: str, source: str) -> str:
     """Return an example as a notebook, with its picture as the output."""
     picture = b64encode((ROOT / "docs" / "figures" / "examples" / f"{name}.png").read_bytes()).decode()
-    code = source.partition('"""\n')[2].strip()
-    code = re.sub(r"(\S+)\.savefig\(sys\.argv\[1\]\) if .* else plt\.show\(\)$", "plt.show()", code)
+    code = re.sub(r"^import sys\n", "", source.partition('"""\n')[2].strip(), flags=re.MULTILINE)
+    code = re.sub(r"\S+\.savefig\(sys\.argv\[1\].*$", "plt.show()", code)
     shown = {"output_type": "display_data", "data": {"image/png": picture}, "metadata": {}}
     title = source.splitlines()[0].strip('"')
     cells = [

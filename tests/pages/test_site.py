@@ -40,7 +40,9 @@ def test_every_example_has_a_page_with_its_picture_and_a_notebook(site: Path) ->
         page = (site / "examples" / f"{example.stem}.html").read_text(encoding="utf-8")
         assert f'src="../figures/examples/{example.stem}.png"' in page
         notebook = json.loads((site / "examples" / f"{example.stem}.ipynb").read_text(encoding="utf-8"))
-        compile(notebook["cells"][1]["source"], example.name, "exec")
+        code = notebook["cells"][1]["source"]
+        compile(code, example.name, "exec")
+        assert "sys." not in code, example.name
         assert notebook["cells"][1]["outputs"]
 
 
