@@ -29,8 +29,7 @@ table = diagnostics.table(siggen.open("runs/examples"), indicators=["my_indicato
 rows = np.isin(table.labels["state"], ["healthy", "severe"])
 values, damaged = table.values[rows], table.labels["state"][rows] == "severe"
 known = np.isfinite(values).all(axis=0)
-names = np.array(table.names)[known]
-auc = {name: roc_auc_score(damaged, column) for name, column in zip(names, values.T[known], strict=True)}
+auc = {n: roc_auc_score(damaged, v) for n, v in zip(np.array(table.names)[known], values.T[known], strict=True)}
 
 figure, axes = plt.subplots(layout="constrained")
 axes.hist(auc.values(), bins=25, color="lightgrey", label=f"all {len(auc)}")
