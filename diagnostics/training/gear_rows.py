@@ -2,16 +2,16 @@
 
 The rows of a gear are equal steps of its own angle, so that one network sees all gears of all gearboxes alike, whatever
 their teeth. Nothing of a level is in them: sensors of unknown gain can be asked. Alone a gear has its average, and its
-residual behind the inverse of its path. Beside a healthy record of the same gearbox it has the change of the residual
-besides, in parts of the healthy one: as it is, and behind the inverse of the healthy record's path.
+residual behind the inverse of its path. Beside healthy records of the same gearbox it has the change of the residual
+besides: over its noise, which the scatter from turn to turn tells, and behind the inverse of the healthy path.
 
 Source: `diagnostics.signal.innovations`, synchronous averaging (McFadden 1987); the rest derived.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
@@ -24,7 +24,7 @@ from siggen.errors import UsageError
 STEPS = 1024
 """Angle steps of a turn; it holds orders up to 511."""
 ROWS = 4
-"""Residual behind the inverse of its path, average, change, change behind the inverse of the healthy path."""
+"""Residual behind the inverse of its path, average, change over its noise, change behind the healthy path's inverse."""
 ALONE = 2
 """How many of them stand without a healthy record; the others are zero there."""
 BAND = 0.4
@@ -41,21 +41,30 @@ class GearLines:
     lines : (records, channels, gears, orders) complex64
         Amplitude and phase at orders 0, 1, 2 ... of the gear's own shaft; zero where it turned less than once,
         and above the band.
+    noise : (records, channels, gears, orders) float32
+        Standard deviation of the lines, from the scatter of the turns; zero where it turned less than twice.
     teeth : (records, gears) int
         Of every gear, in order of power.
     """
 
     lines: np.ndarray
+    noise: np.ndarray
     teeth: np.ndarray
 
     def chosen(self, places: np.ndarray) -> GearLines:
         """Return some of the records."""
-        return replace(self, lines=self.lines[places], teeth=self.teeth[places])
+        return GearLines(*(getattr(self, name)[places] for name in PARTS))
 
 
-def gear_lines(
-    channels: Mapping[str, np.ndarray], tacho_s: np.ndarray, fs_hz: float, gears: Gearing
-) -> tuple[np.ndarray, np.ndarray]:
+PARTS = ("lines", "noise", "teeth")
+
+
+def joined(records: Sequence[GearLines]) -> GearLines:
+    """Return the records of several as one."""
+    return GearLines(*(np.concatenate([getattr(record, name) for record in records]) for name in PARTS))
+
+
+def gear_lines(channels: Mapping[str, np.ndarray], tacho_s: np.ndarray, fs_hz: float, gears: Gearing) -> GearLines:
     """Return the averages of one record.
 
     Parameters
@@ -68,13 +77,6 @@ def gear_lines(
         Sampling frequency [Hz].
     gears : GearTrain or (int, int)
         The gearbox with its teeth, or the teeth of one pair.
-
-    Returns
-    -------
-    (channels, gears, orders) complex64
-        Lines, as of `GearLines`.
-    (gears,) int
-        Teeth.
 
     Raises
     ------
@@ -89,27 +91,40 @@ def gear_lines(
         turns |= {name: (z, turn) for name, z, turn in zip(mesh.names.gears, mesh.teeth, own, strict=True)}
     if len(tacho_s) < 2:
         raise UsageError(f"tacho_s: received {len(tacho_s)} pulses; allowed: 2 or more")
-    found = np.zeros((len(channels), len(turns), STEPS // 2), dtype=np.complex64)
+    lines = np.zeros((len(channels), len(turns), STEPS // 2), dtype=np.complex64)
+    noise = np.zeros(lines.shape, dtype=np.float32)
     for place, (_, turn) in enumerate(turns.values()):
         grid = angle_grid(tacho_s, STEPS) if turn == 1 else shaft_grid(tacho_s, STEPS, turn)
         if grid is not None:
             kept = min(STEPS // 2, int(BAND * fs_hz * float(np.diff(tacho_s).min() / turn)))
-            for row, signal in zip(found, channels.values(), strict=True):
-                wave = resample_to_angle(signal, fs_hz, grid).reshape(grid.revolutions, STEPS).mean(axis=0)
-                row[place, :kept] = np.fft.rfft(wave)[:kept] * (2.0 / STEPS)
-    return found, np.array([z for z, _ in turns.values()])
+            for channel, signal in enumerate(channels.values()):
+                waves = resample_to_angle(signal, fs_hz, grid).reshape(grid.revolutions, STEPS)
+                each = np.fft.rfft(waves)[:, :kept] * (2.0 / STEPS)
+                mean = each.mean(axis=0)
+                lines[channel, place, :kept] = mean
+                if grid.revolutions > 1:
+                    scatter = np.square(np.abs(each - mean)).sum(axis=0) / (grid.revolutions - 1)
+                    noise[channel, place, :kept] = np.sqrt(scatter / grid.revolutions)
+    return GearLines(lines[None], noise[None], np.array([[z for z, _ in turns.values()]]))
 
 
-def gear_rows(records: GearLines, healthy: np.ndarray | None = None) -> np.ndarray:
+def gear_rows(
+    records: GearLines, healthy: GearLines | None = None, references: Sequence[np.ndarray] | None = None
+) -> np.ndarray:
     """Return what a network takes, (records, channels, gears, 4, 1024) float16.
 
     Parameters
     ----------
     records : GearLines
-    healthy : (records, channels, gears, orders) complex64, optional
-        Lines of a healthy record of the same gearbox, NaN where there is none; without it only two rows are not zero.
+    healthy : GearLines, optional
+        Records among which healthy ones of the same gearboxes are; without them only two rows are not zero.
+    references : sequence of (k,) int, optional
+        Of each record the places in `healthy` of those that it is compared with, k = 0 where there are none; default:
+        all of them.
     """
     found = np.zeros((*records.lines.shape[:3], ROWS, STEPS), dtype=np.float16)
+    if healthy is not None and references is None:
+        references = [np.arange(len(healthy.lines))] * len(records.lines)
     for gear, teeth in enumerate(records.teeth.T):
         lines = records.lines[:, :, gear].astype(np.complex128)
         residual = residual_lines(lines, teeth)
@@ -118,31 +133,40 @@ def gear_rows(records: GearLines, healthy: np.ndarray | None = None) -> np.ndarr
         found[:, :, gear, 1] = _unit(_wave(lines))
         if healthy is None:
             continue
-        known = np.isfinite(healthy[:, 0, gear, 0])
-        own = residual_lines(healthy[known, :, gear].astype(np.complex128), teeth[known])
-        if gear:  # pulses tell the teeth of the first one
-            own = _turned(own, residual[known], teeth[known])
-        change = residual[known] - own
-        for row, (part, whole) in enumerate(
-            ((change, own), (innovations(change, teeth[known], own), innovations(own, teeth[known]))), ALONE
-        ):
-            found[known, :, gear, row] = _compressed(_wave(part) / _size(_wave(whole)))
+        for record, known in enumerate(references or ()):
+            if known.size:
+                found[record, :, gear, ALONE:] = _changed(records, residual[record], record, healthy, known, gear)
     return found
 
 
-def _turned(healthy: np.ndarray, lines: np.ndarray, teeth: np.ndarray) -> np.ndarray:
-    """Return healthy lines (records, channels, orders) turned by whole teeth to where they are most like the others.
+def _changed(
+    records: GearLines, residual: np.ndarray, record: int, healthy: GearLines, known: np.ndarray, gear: int
+) -> np.ndarray:
+    """Return the rows of change of a gear of a record, (channels, 2, steps)."""
+    teeth = records.teeth[record, gear]
+    own = residual_lines(healthy.lines[known, :, gear].astype(np.complex128), np.full(known.size, teeth))
+    if gear:  # pulses tell the teeth of the first one
+        own = np.stack([_turned(one, residual, int(teeth)) for one in own])
+    mean = own.mean(axis=0)
+    scatter = np.square(healthy.noise[known, :, gear]).mean(axis=0) / known.size
+    noise = np.sqrt(np.square(records.noise[record, :, gear]) + scatter)
+    change, known_noise = residual - mean, noise > 0.0
+    over = np.divide(change, noise, out=np.zeros_like(change), where=known_noise)
+    lines = np.maximum((known_noise & (mean != 0.0)).sum(axis=-1, keepdims=True), 1)  # half of each is in the wave
+    behind, whole = (innovations(part[None], teeth[None], mean[None])[0] for part in (change, mean))
+    return _compressed(np.stack([_wave(over) / np.sqrt(lines), _wave(behind) / _size(_wave(whole))], axis=1))
+
+
+def _turned(healthy: np.ndarray, lines: np.ndarray, teeth: int) -> np.ndarray:
+    """Return healthy lines (channels, orders) turned by whole teeth to where they are most like the others.
 
     Pulses tell which tooth of the first shaft is where; a driven gear begins every record with another one.
     """
     order = np.arange(lines.shape[-1])
-    found = np.empty_like(healthy)
-    for row, count in enumerate(teeth.tolist()):
-        folded = np.zeros(count, dtype=np.complex128)  # orders that whole teeth turn alike
-        np.add.at(folded, order % count, (lines[row] * healthy[row].conj()).sum(axis=0))
-        tooth = int(np.fft.ifft(folded).real.argmax())
-        found[row] = healthy[row] * np.exp(-2j * np.pi * order * tooth / count)
-    return found
+    folded = np.zeros(teeth, dtype=np.complex128)  # orders that whole teeth turn alike
+    np.add.at(folded, order % teeth, (lines * healthy.conj()).sum(axis=0))
+    tooth = int(np.fft.ifft(folded).real.argmax())
+    return np.asarray(healthy * np.exp(-2j * np.pi * order * tooth / teeth))
 
 
 def _wave(lines: np.ndarray) -> np.ndarray:

@@ -111,8 +111,9 @@ class GearboxNetwork(nn.Module):  # type: ignore[misc]
         """Return what is told; a record whose rows of change are zero stands alone."""
         records, gears = rows.shape[:2]
         flat = rows.flatten(0, 1)
-        change = torch.log1p(100.0 * torch.sqrt((flat[:, ALONE:] ** 2).mean(dim=2)))  # in per cent of the healthy rms
-        beside = (change > 0.0).any(dim=1, keepdim=True).to(rows.dtype)
+        size = torch.sqrt((flat[:, ALONE:] ** 2).mean(dim=2))
+        beside = (size > 0.0).any(dim=1, keepdim=True).to(rows.dtype)
+        change = beside * torch.log(size + 0.01)  # over noise about zero where nothing has changed
         mapped = self.body(flat)
         pooled = torch.cat(
             [self.dropout(torch.cat([mapped.mean(dim=2), mapped.amax(dim=2)], dim=1)), change, beside], 1

@@ -34,7 +34,7 @@ import siggen
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.statistics.evaluation import area, bootstrap_weights
-from diagnostics.training.gear_rows import ALONE, GearLines, gear_lines, gear_rows
+from diagnostics.training.gear_rows import ALONE, PARTS, GearLines, gear_lines, gear_rows, joined
 from diagnostics.training.gearbox_network import (
     NOWHERE,
     QUANTILES,
@@ -59,7 +59,8 @@ LABELS = (
     "record_id", "specimen_id", "split", "state_id", "state", "operating_point_id", "repeat", "fault", "faulty_gear",
     "damaged_area_share",
 )  # fmt: skip
-GEARS = ("pinion", "gear")
+GEARS, SOUND = ("pinion", "gear"), "none"
+"""Values of `faulty_gear`. All teeth are sound beside a spalled bearing, bad alignment or a loose sensor too."""
 TEETH = tuple(f"teeth_{gear}" for gear in GEARS)
 FEWEST_PAIRS, SHARES = 20, {TEST: 0.15, VALIDATION: 0.1}
 """Pairs of teeth from which on these decide the split, and the shares that are not learnt from."""
@@ -262,14 +263,14 @@ def _keep_plan(home: Path, chosen: PretrainingSettings, places: list[dict[str, A
 
 def _write_block(path: Path, records: Sequence[Mapping[str, Any] | None], stream: Any) -> None:
     known = sorted((record for record in records if record is not None), key=lambda record: record["record_id"])
-    lines, teeth = zip(*(_of_record(record, stream) for record in known), strict=True)
+    averages = joined([_of_record(record, stream) for record in known])
     labels = {name: np.array([record[name] for record in known]) for name in LABELS}
     content = BytesIO()
-    np.savez(content, allow_pickle=False, lines=np.stack(lines), teeth=np.stack(teeth), **labels)
+    np.savez(content, allow_pickle=False, **{name: getattr(averages, name) for name in PARTS}, **labels)
     write_file(path, content.getvalue())
 
 
-def _of_record(record: Mapping[str, Any], stream: Any) -> tuple[np.ndarray, np.ndarray]:
+def _of_record(record: Mapping[str, Any], stream: Any) -> GearLines:
     columns = {one.name: record[one.column] for one in stream.channels if one.quantity == ACCELERATION}
     if not set(TEETH) <= record.keys():
         raise UsageError(f"families: received other gears than {' and '.join(GEARS)}; allowed: one pair of them")
@@ -291,11 +292,11 @@ def _read(home: Path, families: int, blocks: int) -> KeptRecords:
             for name in ("record_id", "specimen_id"):
                 part[name] = part[name] * families + family  # numbers of their own
             parts.append(part)
-    joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    pairs, joined["pair"] = np.unique(joined["teeth"], axis=0, return_inverse=True)
+    whole = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    pairs, whole["pair"] = np.unique(whole["teeth"], axis=0, return_inverse=True)
     if len(pairs) >= FEWEST_PAIRS:
-        joined["split"] = pair_splits(pairs)[joined["pair"]]
-    return KeptRecords(GearLines(joined.pop("lines"), joined.pop("teeth")), joined)
+        whole["split"] = pair_splits(pairs)[whole["pair"]]
+    return KeptRecords(GearLines(*(whole.pop(name) for name in PARTS)), whole)
 
 
 def pair_splits(pairs: np.ndarray) -> np.ndarray:
@@ -310,12 +311,7 @@ def pair_splits(pairs: np.ndarray) -> np.ndarray:
 
 def _rows(kept: KeptRecords) -> np.ndarray:
     """Return the rows of all records, beside a healthy record where there is one."""
-    lines = kept.averages.lines
-    healthy = np.full_like(lines, np.nan)
-    for row, known in enumerate(healthy_references(kept.labels)):
-        if known.size:
-            healthy[row] = lines[known].mean(axis=0)
-    return gear_rows(kept.averages, healthy)
+    return gear_rows(kept.averages, kept.averages, healthy_references(kept.labels))
 
 
 def _truths(kept: KeptRecords, kinds: Sequence[str]) -> DamageTruth:
@@ -323,7 +319,7 @@ def _truths(kept: KeptRecords, kinds: Sequence[str]) -> DamageTruth:
     with np.errstate(divide="ignore"):
         size = np.log(kept.labels["damaged_area_share"].astype(np.float32))
     return DamageTruth(
-        damaged=(fault != HEALTHY).astype(np.float32),
+        damaged=(gear != SOUND).astype(np.float32),
         kind=np.array([kinds.index(name) if name in kinds else NOWHERE for name in fault.tolist()]),
         gear=np.array([GEARS.index(name) if name in GEARS else NOWHERE for name in gear.tolist()]),
         size=np.where(np.isfinite(size), size, np.nan),
@@ -335,14 +331,15 @@ def _trained(
 ) -> tuple[GearboxNetwork, np.ndarray, DamageTruth]:
     """Return the network at its last pass, with the rows and the truth of all records."""
     learn = kept.of_split(TRAIN)
-    faults = set(kept.labels["fault"][learn].tolist()) - {HEALTHY}
-    if not faults or HEALTHY not in kept.labels["fault"][learn]:
+    sound = kept.labels["faulty_gear"][learn] == SOUND
+    faults = sorted(set(kept.labels["fault"][learn][~sound].tolist()))
+    if not faults or not sound.any():
         raise UsageError("families: the split train has no healthy, or no damaged records; ask for more gearboxes")
-    rows, truths = _rows(kept), _truths(kept, sorted(faults))
+    rows, truths = _rows(kept), _truths(kept, faults)
     share, sizes = float(truths.damaged[learn].mean()), truths.size[learn][np.isfinite(truths.size[learn])]
     channels = rows.shape[1]
     with seeded(chosen.seed):
-        network = GearboxNetwork(sorted(faults), chosen.widths)
+        network = GearboxNetwork(faults, chosen.widths)
         if sizes.size:
             network.size_centre.copy_(torch.tensor([sizes.mean(), max(float(sizes.std()), 1e-3)]))
 
@@ -453,10 +450,11 @@ def _scores_of(told: Told, truths: DamageTruth, labels: Mapping[str, np.ndarray]
     """Return scores with limits; `drawn` names what is resampled, since that is what others would draw anew."""
     damage, specimen = told.damage.double().numpy(), labels["specimen_id"]
     weights = bootstrap_weights(labels[drawn], 0)
-    ill, found = truths.damaged > 0.0, dict[str, Any]()
-    for name in ("damage", *dict.fromkeys(labels["state"][ill].tolist())):
-        asked = ~ill | (ill if name == "damage" else labels["state"] == name)
-        found[f"auc_{name}"] = asdict(area(damage[asked], ill[asked], weights[:, asked], specimen[asked]))
+    ill, healthy, found = truths.damaged > 0.0, labels["fault"] == HEALTHY, dict[str, Any]()
+    for name in ("damage", *dict.fromkeys(labels["state"][~healthy].tolist())):
+        of = ill if name == "damage" else labels["state"] == name
+        asked = healthy | of  # of sound teeth with another fault: half, as far as damage is told from that
+        found[f"auc_{name}"] = asdict(area(damage[asked], of[asked], weights[:, asked], specimen[asked]))
     for name, said, place in (("kind", told.kind, truths.kind), ("gear", told.gear, truths.gear)):
         known = place != NOWHERE
         if known.any():

@@ -63,13 +63,19 @@ def _out_of_range(path: str, value: Any) -> Iterator[Problem]:
     """Yield numbers that a section must not hold, though nobody wrote them: they were carried over."""
     if isinstance(value, tuple):
         for place, entry in enumerate(value):
-            yield from _out_of_range(joined(path, getattr(entry, entry.key_field) if entry.key_field else place), entry)
+            named = isinstance(entry, Section) and entry.key_field
+            yield from _out_of_range(joined(path, getattr(entry, named) if named else place), entry)
     elif isinstance(value, Section):
+        own = {key: getattr(value, key) for key in type(value).model_fields}
         try:
-            type(value).model_validate(value.model_dump())
+            type(value).model_validate(
+                own
+            )  # not what it would be in a file: what a state has changed has no form there
         except ValidationError as error:
             for problem in section_problems(type(value), error.errors()):
                 yield Problem(joined(path, problem.path), problem.received, problem.allowed)
+        for key, inner in own.items():
+            yield from _out_of_range(joined(path, key), inner)
 
 
 # What is impossible about the bearings of shafts: balls that do not fit, spalls that do not fit their element.

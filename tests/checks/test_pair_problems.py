@@ -66,3 +66,15 @@ def test_what_is_implausible_of_a_pair_is_told_once_with_that_pair_and_their_num
     ]
     assert len(sentences) == 1
     assert "gears.pairs.1, 19/48 teeth, m 3, b 4 mm (1 of 2 pairs)" in sentences[0]
+
+
+def test_a_state_may_shift_a_drawn_number_of_every_pair_as_far_as_its_key_allows() -> None:
+    pairs = f"gears.pairs=[{SOUND}, {SOUND.replace('47', '48')}]"
+    shifted = (
+        "states.sham={{severity: slight, fault: misalignment, changes: "
+        "{{manufacture.lead_misalignment_um: {{add: [15, 30]}}, sensors.side.gain: {{times: {}}}}}}}"
+    )
+    load_config("quickstart", [pairs, shifted.format(0.7)])
+    with pytest.raises(ConfigError) as refused:
+        load_config("quickstart", [pairs, shifted.format(-1)])
+    assert {problem.path for problem in refused.value.problems} == {"states.sham.changes.sensors.side.gain"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diagnostics.training.gear_rows import ROWS, STEPS, GearLines, gear_lines, gear_rows
+from diagnostics.training.gear_rows import ROWS, STEPS, GearLines, gear_lines, gear_rows, joined
 from siggen.errors import UsageError
 
 TEETH = (18, 47)
@@ -23,10 +23,9 @@ def record(rng: np.random.Generator, *, pinion: float = 0.0, gear: float = 0.0) 
 
 
 def rows_of(signals: list[np.ndarray], pulses: np.ndarray, healthy: np.ndarray | None = None) -> np.ndarray:
-    found = [gear_lines({"lid": signal}, pulses, FS_HZ, TEETH) for signal in signals]
-    lines, teeth = (np.stack(part) for part in zip(*found, strict=True))
-    known = None if healthy is None else np.stack([gear_lines({"lid": healthy}, pulses, FS_HZ, TEETH)[0]] * len(lines))
-    return gear_rows(GearLines(lines, teeth), known)[:, 0].astype(np.float64)
+    records = joined([gear_lines({"lid": signal}, pulses, FS_HZ, TEETH) for signal in signals])
+    known = None if healthy is None else gear_lines({"lid": healthy}, pulses, FS_HZ, TEETH)
+    return gear_rows(records, known)[:, 0].astype(np.float64)
 
 
 def test_an_event_stands_in_the_turn_of_its_own_gear() -> None:
@@ -61,17 +60,32 @@ def test_a_change_is_told_in_parts_of_the_healthy_record_and_nothing_where_there
     assert rows_of([healthy], pulses)[:, :, 2:].max() == 0.0
 
 
+def test_the_change_of_an_unchanged_gearbox_is_as_large_as_its_noise_says() -> None:
+    # of both gears; the event tells with which tooth the driven one began
+    for gear, events in enumerate(({}, {"gear": 4.0})):
+        pairs = [[record(np.random.default_rng(seed), **events)[0] for seed in (2 * k, 2 * k + 1)] for k in range(8)]
+        pulses = record(np.random.default_rng(0))[1]
+        changes = np.stack([rows_of([one], pulses, other)[0, gear, 2] for one, other in pairs])
+        # 1 but for the scatter of k turns, whose inverse has a mean of (2 k - 2) / (2 k - 3): 1.4 % for the 36 of the
+        # gear; eight pairs of 475 lines scatter by 1 / sqrt(8 x 475) = 1.6 %
+        assert 2.0 * np.square(np.sinh(changes)).mean() == pytest.approx(1.0, abs=0.06)
+
+
 def test_a_driven_gear_that_began_with_another_tooth_has_not_changed() -> None:
     rng = np.random.default_rng(4)
     lines, order = np.zeros((1, 2, 2, STEPS // 2), dtype=np.complex64), np.arange(STEPS // 2)
     lines[..., 9:400] = rng.standard_normal((1, 2, 2, 391)) + 1j * rng.standard_normal((1, 2, 2, 391))
-    teeth = np.array([TEETH])
-    for begun in (0, 5, 46):
+    noise, teeth = np.where(np.abs(lines) > 0.0, 1.0, 0.0).astype(np.float32), np.array([TEETH])
+
+    def changes(begun: float) -> np.ndarray:
         healthy = lines * np.exp(-2j * np.pi * order * np.array([[0], [begun]]) / np.array([[18], [47]]))
-        found = gear_rows(GearLines(lines, teeth), healthy.astype(np.complex64))[..., 2:, :]
-        assert np.abs(found).max() < 1e-4  # of 1; complex64
-    half = lines * np.exp(-2j * np.pi * order * 2.5 / 47)  # no whole teeth: another gear
-    assert np.abs(gear_rows(GearLines(lines, teeth), half.astype(np.complex64))[:, :, 1, 2:]).max() > 1.0
+        both = np.concatenate([healthy.astype(np.complex64), lines])  # several, each turned by itself
+        several = GearLines(both, np.repeat(noise, 2, axis=0), np.repeat(teeth, 2, axis=0))
+        return np.asarray(np.abs(gear_rows(GearLines(lines, noise, teeth), several)[0, :, 1, 2:]))
+
+    for begun in (0, 5, 46):
+        assert changes(begun).max() < 1e-3  # of 1; complex64 and sixteen bits
+    assert changes(2.5).max() > 1.0  # no whole teeth: another gear
 
 
 def test_a_record_without_a_turn_is_refused_in_words() -> None:
