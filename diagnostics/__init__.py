@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from diagnostics.training.average_rows import averages
     from diagnostics.training.classifiers import BoostingBaseline, LogisticBaseline
     from diagnostics.training.pretraining import PretrainingSettings, pretrain
+    from diagnostics.training.shipped_network import pretrained_features
 
 __all__ = [
     "BoostingBaseline",
@@ -33,6 +34,7 @@ __all__ = [
     "make_benchmark",
     "open_benchmark",
     "pretrain",
+    "pretrained_features",
     "reveal_benchmark",
     "score",
     "score_benchmark",
@@ -57,6 +59,7 @@ _HOMES = {
     "BoostingBaseline": "diagnostics.training.classifiers",
     "pretrain": "diagnostics.training.pretraining",
     "PretrainingSettings": "diagnostics.training.pretraining",
+    "pretrained_features": "diagnostics.training.shipped_network",
 }
 
 

@@ -53,6 +53,7 @@ from diagnostics.bench.question import (
 from diagnostics.indicators.classifier_table import check_table, classifier_table, feature_matrix
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.table import record_table
+from diagnostics.judging.alarms import PRETRAINED
 from diagnostics.judging.evaluation import Design, Entry, pooled_scores
 from diagnostics.judging.learners import BestColumn, Odds
 from diagnostics.page.blocks import (
@@ -82,6 +83,8 @@ from diagnostics.signal.innovations import residual_lines
 from diagnostics.statistics.evaluation import RESAMPLES, Interval, area_interval, bootstrap_weights, interval
 from diagnostics.training.average_rows import AveragedRecords, padded_lines
 from diagnostics.training.feature_classifier import DEFAULT_STRENGTH
+from diagnostics.training.gear_rows import GearLines
+from diagnostics.training.gear_rows import joined as joined_lines
 from diagnostics.training.lives import Inspections, blind_inspections, inspections_of, predictors
 from diagnostics.training.referenced import log_values
 from diagnostics.training.splits import SpecimenSplit
@@ -114,6 +117,8 @@ class BenchRecords:
     channels : tuple of str
     teeth : str
         Label of the teeth of the shaft that was averaged.
+    gears : GearLines, optional
+        Averages of both gears; None where the network of many gearboxes does not know such sets.
     """
 
     matrix: FeatureMatrix
@@ -124,6 +129,7 @@ class BenchRecords:
     learn: int
     channels: tuple[str, ...]
     teeth: str
+    gears: GearLines | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +148,8 @@ class SeenRecords:
     bands : (records, columns) float64
     convolutions : (records, columns) float64
     averages : AveragedRecords
+    heads : (records, numbers) float64, optional
+        What the network of many gearboxes says.
     referenced : bool
     """
 
@@ -152,6 +160,7 @@ class SeenRecords:
     bands: np.ndarray
     convolutions: np.ndarray
     averages: AveragedRecords
+    heads: np.ndarray | None
     referenced: bool
 
     @property
@@ -180,7 +189,17 @@ def benchmark_records(benchmark: Benchmark, workers: int) -> BenchRecords:
     lines = line_array(waveforms)[..., : max(orders, 1)]
     ways = [True, *map(is_alone, benchmark.parts)]
     alone = np.repeat(ways, [len(part.values) for part in matrices])
-    return BenchRecords(matrix, lines, _references(labels), asked, alone, count, first.channels, first.teeth[0])
+    named, gears = (first.channels, first.teeth[0]), _gear_averages(benchmark, workers)
+    return BenchRecords(matrix, lines, _references(labels), asked, alone, count, *named, gears)
+
+
+def _gear_averages(benchmark: Benchmark, workers: int) -> GearLines | None:
+    if missing_packages("torch", "safetensors"):
+        return None
+    from diagnostics.training.shipped_network import gear_averages, knows
+
+    sets = [benchmark.learn(), *map(benchmark.part, benchmark.parts)]
+    return joined_lines([gear_averages(one, workers) for one in sets]) if all(map(knows, sets)) else None
 
 
 def _references(labels: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -221,8 +240,18 @@ def seen_records(records: BenchRecords, *, referenced: bool) -> SeenRecords:
         bands=bands,
         convolutions=convolution_features(level_waves(difference, known), learn),
         averages=AveragedRecords(_as_averages(lines), teeth, records.channels, beside),
+        heads=_heads(records, kept, referenced=referenced),
         referenced=referenced,
     )
+
+
+def _heads(records: BenchRecords, kept: np.ndarray, *, referenced: bool) -> np.ndarray | None:
+    if records.gears is None:
+        return None
+    from diagnostics.training.shipped_network import heads
+
+    own = records.gears.chosen(kept)
+    return heads(own, records.gears, records.reference[kept, None]) if referenced else heads(own)
 
 
 def _as_averages(lines: np.ndarray) -> np.ndarray:
@@ -327,7 +356,11 @@ def entries(seen: SeenRecords, seed: int) -> list[Entry]:
         Entry(CONVOLUTIONS, ridge, convolutions, every),
         Entry(NETWORK, partial(StoppedNetwork, seen.averages, stops, seed), np.arange(every.size), every),
     ]
-    return baselines[:-1] if missing_packages("torch", "safetensors") else baselines
+    if missing_packages("torch", "safetensors"):
+        return [baseline for baseline in baselines if baseline.name != NETWORK]
+    if seen.heads is not None:
+        baselines.append(Entry(PRETRAINED, AsItIs, seen.heads[:, 0], every))
+    return baselines
 
 
 def stacked(seen: SeenRecords, known: Sequence[Entry], every: Mapping[str, np.ndarray], seed: int) -> np.ndarray:

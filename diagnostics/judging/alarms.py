@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnostics.base.extras import missing_packages
 from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.judging.evaluation import Design, Entry, chosen_scores, inner_scores, pooled_scores
@@ -33,10 +34,13 @@ from diagnostics.statistics.detectable_size import detection_curve, size_at, wei
 from diagnostics.statistics.evaluation import Interval, area, area_interval, bootstrap_weights, fewest_gearboxes
 from diagnostics.statistics.indicator_statistics import size_interval
 from diagnostics.training.feature_classifier import DEFAULT_STRENGTH
-from diagnostics.training.referenced import healthy_referenced
+from diagnostics.training.referenced import healthy_referenced, healthy_references
+from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError, counted
 
 FALSE_ALARMS, FOUND, CHANCE = 0.05, 0.9, 0.5
+HEADS_STRENGTH = 0.01
+"""C of the regression on what the network of many gearboxes says: few numbers, which it has made for this."""
 FEWEST_HEALTHY = 20
 """Healthy records from which one in twenty can lie above a threshold."""
 
@@ -45,6 +49,7 @@ DESIGN = Design(folds=5, owner=2000)
 FEWEST_SPECIMENS = 4
 INDICATOR, CLASSIFIER = "best single indicator", "logistic regression on all indicators"
 BOOSTED, NETWORKS, CHOSEN = "gradient boosting on all indicators", "network", "chosen"
+PRETRAINED = "network of many gearboxes"
 CHOICE = "chosen by the other gearboxes"
 AREA = "damaged_area_mm2"
 
@@ -341,8 +346,8 @@ class Detectors:
 
 
 @single_thread()
-def judged_detectors(matrix: FeatureMatrix, seed: int) -> Detectors:
-    """Judge all detectors of a set that learn on its indicators.
+def judged_detectors(matrix: FeatureMatrix, seed: int, dataset: Dataset | None = None) -> Detectors:
+    """Judge all detectors of a set that learn on its indicators, and on what the network of many gearboxes says.
 
     Parameters
     ----------
@@ -350,13 +355,29 @@ def judged_detectors(matrix: FeatureMatrix, seed: int) -> Detectors:
         All records of the one table of the set.
     seed : int
         Of folds and resampled gearboxes.
+    dataset : siggen Dataset, optional
+        The set, whose signals that network takes; without it, or where the network does not know such a set, it is
+        left out.
     """
     differences, kept = healthy_referenced(matrix)
-    alone = _cross_fitted(matrix, seed, referenced=False)
-    referenced = _cross_fitted(differences, seed, referenced=True) if kept.any() else {}
+    said = _network_says(matrix, dataset) if dataset is not None else None
+    alone = _cross_fitted(matrix, seed, said and said[0], referenced=False)
+    referenced = _cross_fitted(differences, seed, said and said[1][kept], referenced=True) if kept.any() else {}
     healthy = matrix.labels["fault"] == HEALTHY
     gearboxes = tuple(int(np.unique(matrix.groups[side]).size) for side in (healthy, ~healthy))
     return Detectors(alone, referenced, (gearboxes[0], gearboxes[1]))
+
+
+def _network_says(matrix: FeatureMatrix, dataset: Dataset) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return what the network of many gearboxes says of all records, alone and beside healthy ones."""
+    if missing_packages("torch", "safetensors"):
+        return None
+    from diagnostics.training.shipped_network import gear_averages, heads, knows
+
+    if not knows(dataset):
+        return None
+    lines = gear_averages(dataset)
+    return heads(lines), heads(lines, lines, healthy_references(matrix.labels))
 
 
 def with_networks(detectors: Detectors, matrix: FeatureMatrix, training: Training, seed: int) -> Detectors:
@@ -459,7 +480,7 @@ def _network(
     return {NETWORKS: detector} if detector else {}
 
 
-def _entries(matrix: FeatureMatrix, seed: int, *, referenced: bool) -> list[Entry]:
+def _entries(matrix: FeatureMatrix, seed: int, said: np.ndarray | None, *, referenced: bool) -> list[Entry]:
     """Return who is judged on all gearboxes; differences of logarithms have been taken beside a reference."""
     from diagnostics.training.classifiers import DEFAULT_TREES, BoostingBaseline, LogisticBaseline
 
@@ -474,17 +495,23 @@ def _entries(matrix: FeatureMatrix, seed: int, *, referenced: bool) -> list[Entr
         Entry(CLASSIFIER, logistic, matrix.values, every),
         Entry(BOOSTED, lambda: Odds(BoostingBaseline(seed, DEFAULT_TREES)), matrix.values, every),
     ]
+    if said is not None:
+        found.append(
+            Entry(PRETRAINED, lambda: Odds(LogisticBaseline((HEADS_STRENGTH,), take_logarithms=False)), said, every)
+        )
     return found if names else found[1:]
 
 
-def _cross_fitted(matrix: FeatureMatrix, seed: int, *, referenced: bool) -> dict[str, JudgedDetector]:
+def _cross_fitted(
+    matrix: FeatureMatrix, seed: int, said: np.ndarray | None, *, referenced: bool
+) -> dict[str, JudgedDetector]:
     """Return indicator, classifiers and the choice among them; empty with too few gearboxes of either side."""
     labels, specimen = matrix.labels, matrix.groups
     damaged = labels["fault"] != HEALTHY
     if too_few(matrix):
         return {}
     fold = DESIGN.dealt(specimen, seed)[0]
-    entries = _entries(matrix, seed, referenced=referenced)
+    entries = _entries(matrix, seed, said, referenced=referenced)
     pooled = {entry.name: pooled_scores(entry, damaged, specimen, fold) for entry in entries}
     inner = {entry.name: inner_scores(entry, damaged, specimen, fold) for entry in entries}
     score, names = chosen_scores({name: scores for name, (scores, _) in pooled.items()}, inner, damaged, fold)

@@ -39,6 +39,7 @@ from diagnostics.page.style import (
 from diagnostics.page.tables import table
 from diagnostics.page.template import write_page
 from diagnostics.page.wording import capitalised, counted, percent
+from diagnostics.prediction.gearbox_answer import GearboxAnswer
 from diagnostics.prediction.known_reasons import OwnState
 from diagnostics.prediction.model_facts import ModelFacts
 from diagnostics.prediction.prediction import Nearness, Prediction, Vote
@@ -57,6 +58,11 @@ MEANING = (
     "The models were trained on simulated records only. No measured pitting was used. A probability compares the "
     "simulated states: it says which of them the recording is most like. It is not the probability that the gear is "
     "damaged."
+)
+
+MEANING_OF_NETWORK = (
+    "The network has learnt from simulated gearboxes only. No measured damage was used. No damage seen does not mean "
+    "that there is none."
 )
 
 HARMONICS_SHOWN = 4
@@ -208,38 +214,55 @@ def write_prediction(found: Prediction, facts: ModelFacts, folder: Path) -> Path
     UsageError
         If matplotlib is missing.
     """
-    require_packages("the plots of a prediction", "matplotlib")
     content = prediction_facts(found, facts)
+    measured = table(
+        ("Indicator and channel", "Median"),
+        list(plain(content["indicators"]).items())[:INDICATORS_SHOWN],
+        f"Median of each indicator over the pieces of the recording. {found.recording.levels_sentence}",
+        ".4g",
+        sortable=True,
+        tall=True,
+    )
+    lead = [f"{capitalised(prediction_headline(found).rstrip('.'))}.", MEANING]
+    heads = found.state, lead, prediction_rows(found)
+    return _written(folder, content, found, heads, [Heading("Indicators"), measured], model_provenance(facts))
+
+
+def write_answer(found: GearboxAnswer, folder: Path) -> Path:
+    """Write the answer of the network that comes with the package, as `write_prediction` does."""
+    lead = [f"{capitalised(found.headline.rstrip('.'))}.", MEANING_OF_NETWORK]
+    note = f"Made by siggen-diagnostics {siggen.__version__} with the network that comes with it."
+    return _written(folder, found.facts, found, (found.verdict, lead, found.rows), [], note)
+
+
+def _written(
+    folder: Path,
+    content: dict[str, Any],
+    found: Prediction | GearboxAnswer,
+    heads: tuple[str, list[str], list[tuple[str, str]]],
+    more: list[Block],
+    provenance: str,
+) -> Path:
+    """Write JSON, plots and the page with answer and sentences, rows, plots and what else there is."""
+    require_packages("the plots of a prediction", "matplotlib")
     write_file(folder / "prediction.json", json_text(content))
-    blocks: list[Block] = []
-    for channel in found.recording.channels:
+    recording, (answer, lead, rows) = found.recording, heads
+    figures: list[Block] = []
+    for channel in recording.channels:
         with styled():
-            png = png_bytes(sideband_figure(found.recording, meshes_of(found.train)[0], found.pulses, channel))
+            png = png_bytes(sideband_figure(recording, meshes_of(found.train)[0], found.pulses, channel))
         write_file(folder / f"sidebands_{channel}.png", png)
-        blocks.append(FigureBlock(png, f"Order spectrum (Hann) around mesh harmonics: {channel}."))
-    page = folder / "prediction.html"
-    write_page(page, _page(found, facts, plain(content["indicators"]), blocks))
-    return page
-
-
-def _page(found: Prediction, facts: ModelFacts, indicators: dict[str, float | None], blocks: list[Block]) -> Page:
-    name = found.recording.path.name
-    parts = [
-        Heading(f"{name}: {found.state}", 1),
-        *summary_blocks([f"{capitalised(prediction_headline(found).rstrip('.'))}.", MEANING]),
-        table(("Question", "Answer"), prediction_rows(found), "What the models say about this recording.", text=True),
+        figures.append(FigureBlock(png, f"Order spectrum (Hann) around mesh harmonics: {channel}."))
+    blocks = [
+        Heading(f"{recording.path.name}: {answer}", 1),
+        *summary_blocks(lead),
+        table(("Question", "Answer"), rows, "What is said about this recording.", text=True),
         Heading("Sidebands"),
-        FigureGrid(blocks),
-        Heading("Indicators"),
-        table(
-            ("Indicator and channel", "Median"),
-            list(indicators.items())[:INDICATORS_SHOWN],
-            f"Median of each indicator over the pieces of the recording. {found.recording.levels_sentence}",
-            ".4g",
-            sortable=True,
-            tall=True,
-        ),
+        FigureGrid(figures),
+        *more,
         Heading("Notes"),
-        *note_blocks([model_provenance(facts)]),
+        *note_blocks([provenance]),
     ]
-    return Page(f"Prediction for {name}", parts)
+    page = folder / "prediction.html"
+    write_page(page, Page(f"Prediction for {recording.path.name}", blocks))
+    return page

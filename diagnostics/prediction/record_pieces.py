@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -81,6 +81,18 @@ def at_rate(recording: MeasuredRecording, fs_hz: float) -> MeasuredRecording:
     return replace(recording, channels=channels, fs_hz=recording.fs_hz * float(ratio))
 
 
+def cut(
+    recording: MeasuredRecording, pulses: ShaftPulses, duration_s: float
+) -> Iterator[tuple[dict[str, np.ndarray], np.ndarray]]:
+    """Yield channels and pulse times of consecutive pieces; a rest shorter than a piece counts if there is no more."""
+    samples = next(iter(recording.channels.values())).size
+    length = min(round(duration_s * recording.fs_hz), samples)
+    for start in range(0, samples - length + 1, length):
+        begin_s, end_s = start / recording.fs_hz, (start + length - 1) / recording.fs_hz
+        times_s = pulses.times_s[(pulses.times_s >= begin_s) & (pulses.times_s <= end_s)] - begin_s
+        yield {name: signal[start : start + length] for name, signal in recording.channels.items()}, times_s
+
+
 def record_pieces(
     recording: MeasuredRecording,
     pulses: ShaftPulses,
@@ -111,14 +123,9 @@ def record_pieces(
     UsageError
         If one of these fails.
     """
-    samples = next(iter(recording.channels.values())).size
-    length = min(round(duration_s * recording.fs_hz), samples)
     labels: dict[str, float] = {"record_id": 0, "speed_hz": pulses.speed_hz, "torque_nm": math.nan}
     found, values = [], []
-    for start in range(0, samples - length + 1, length):
-        begin_s, end_s = start / recording.fs_hz, (start + length - 1) / recording.fs_hz
-        times_s = pulses.times_s[(pulses.times_s >= begin_s) & (pulses.times_s <= end_s)] - begin_s
-        piece = {name: signal[start : start + length] for name, signal in recording.channels.items()}
+    for piece, times_s in cut(recording, pulses, duration_s):
         found.append(record_values(piece, times_s, recording.fs_hz, train, settings))
         mine = _own_values(own, Recording(labels, piece, times_s, recording.fs_hz, train))
         values.append(found[-1].values | mine | floor_features(piece, recording.fs_hz))

@@ -21,7 +21,7 @@ from diagnostics.recordings.recorder_files import (
 )
 from siggen.errors import UsageError
 
-IDENTITY = b"siggen.identity"
+IDENTITY, RATE, SIGNAL = b"siggen.identity", b"fs_hz", b"signal"
 """Key of the schema's metadata in every file that siggen writes."""
 MOST_DEPTH = 8
 """Of structures within structures in a MAT file."""
@@ -50,12 +50,15 @@ def read_parquet(path: Path, row: int | None = None) -> Columns:
             schema = file.schema_arrow
             refuse_twice(path, schema.names)
             audio = [field.name for field in schema if _is_audio(field.type)]
-            lists = [field.name for field in schema if _is_list(field.type)]
+            lists = [field.name for field in schema if _is_list(field.type) and _is_signal(field)]
             numbers = [field.name for field in schema if _is_number(field.type) or pa.types.is_timestamp(field.type)]
             table = file.read([*audio, *lists] or numbers, use_threads=False)
     except (OSError, pa.ArrowInvalid) as error:
         raise UsageError(f"{path}: cannot be read as Parquet: it is none, or damaged") from error
-    about: Any = {"simulated": IDENTITY in (schema.metadata or {}), "layout": {"format": "Parquet"}}
+    facts = schema.metadata or {}
+    about: Any = {"simulated": IDENTITY in facts, "layout": {"format": "Parquet"}}
+    if about["simulated"] and RATE in facts:
+        about["fs_hz"] = float(facts[RATE])
     about |= _channels(schema)
     if not (lists or audio):
         return Columns({name: _numbers(table.column(name).combine_chunks()) for name in numbers}, **about)
@@ -109,6 +112,11 @@ def _channels(schema: Any) -> dict[str, dict[str, str]]:
     own = {f"{found[b'sensor']}_{found[b'axis']}": name for name, found in facts.items()}
     clocks = {field.name: "s" for field in schema if str(field.type).startswith("timestamp")}
     return {"own": own, "units": clocks | {name: found[b"unit"] for name, found in facts.items()}}
+
+
+def _is_signal(field: Any) -> bool:
+    """Return whether a field is a signal; those of siggen say what they are, such as which teeth are damaged."""
+    return bool((field.metadata or {}).get(b"role", SIGNAL) == SIGNAL)
 
 
 def _is_list(kind: Any) -> bool:

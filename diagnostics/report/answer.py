@@ -20,6 +20,7 @@ from diagnostics.judging.alarms import (
     FOUND,
     INDICATOR,
     NETWORKS,
+    PRETRAINED,
     Detectors,
     FoundSize,
     JudgedDetector,
@@ -179,13 +180,17 @@ LOOKS = {
     CLASSIFIER: ("logistic", "#b01e3c", "v"),
     BOOSTED: ("boosting", "#8e44ad", "D"),
     NETWORKS: ("network", "#e3a21a", "^"),
+    PRETRAINED: ("many gearboxes", "#2e8b57", "P"),
 }
 """Name in the legend, colour and marker of each family; the answer itself in black."""
+
+FAMILIES = (BOOSTED, CLASSIFIER, INDICATOR, NETWORKS, PRETRAINED)
+"""Those that the strongest is compared with."""
 
 DASHES = ("-", "--", ":", "-.")
 """By kind of damage."""
 
-SIDEWAYS = (1.0, 0.92, 0.96, 1.04, 1.08)
+SIDEWAYS = (1.0, 0.92, 0.96, 1.04, 1.08, 1.12)
 """Families stand beside each other at one size, so that all can be seen."""
 
 MOST_NAMES = 4
@@ -352,7 +357,7 @@ def answer_sentences(detectors: Detectors, *, error_free: bool = False) -> list[
     best, alone = detectors.strongest, detectors.alone
     if best is None:
         return [("No answer", capitalised(ANSWERS.lacking(detectors)))]
-    rivals = {name: alone[name] for name in (BOOSTED, CLASSIFIER, INDICATOR, NETWORKS) if name in alone}
+    rivals = {name: alone[name] for name in FAMILIES if name in alone}
     return [
         *([("On a sham", sham)] if (sham := ANSWERS.on_a_sham(detectors)) else []),
         ("From which size", ANSWERS.from_which_size(best)),

@@ -129,7 +129,7 @@ def write_report(
         matrix = with_kinds(feature_matrix(table, set_classes(dataset, network.classes)), dataset)
         ranked = ranking_table(records, dataset, states=page.states, leave_out=True)
         evaluation = begin(_evaluated, ranked, AssessmentSettings(seed=seed))
-        on_indicators = begin(judged_detectors, matrix, seed)
+        on_indicators = begin(judged_detectors, matrix, seed, dataset)
         training, notes = _trained(dataset, table, folder / "models", seed, network, second, stage)
         with stage("evaluation", 2) as advance:
             judged = evaluation()

@@ -30,6 +30,8 @@ ALONE = 2
 BAND = 0.4
 """Part of the sampling rate up to which lines are kept: above it is no vibration, and whitening would raise it."""
 TINY = 1e-30
+ACCELERATION = "acceleration"
+"""Quantity of the channels that are taken."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +53,7 @@ class GearLines:
     noise: np.ndarray
     teeth: np.ndarray
 
-    def chosen(self, places: np.ndarray) -> GearLines:
+    def chosen(self, places: np.ndarray | slice) -> GearLines:
         """Return some of the records."""
         return GearLines(*(getattr(self, name)[places] for name in PARTS))
 
@@ -109,7 +111,7 @@ def gear_lines(channels: Mapping[str, np.ndarray], tacho_s: np.ndarray, fs_hz: f
 
 
 def gear_rows(
-    records: GearLines, healthy: GearLines | None = None, references: Sequence[np.ndarray] | None = None
+    records: GearLines, healthy: GearLines | None = None, references: Sequence[np.ndarray] | np.ndarray | None = None
 ) -> np.ndarray:
     """Return what a network takes, (records, channels, gears, 4, 1024) float16.
 

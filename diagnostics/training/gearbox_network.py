@@ -11,18 +11,20 @@ widened on gearboxes left out (Romano et al. 2019); the rest derived.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
 from torch import nn
 
 from diagnostics.training.gear_rows import ALONE, ROWS
+from diagnostics.training.likeness import NUMBERS, distances, farthest
 from diagnostics.training.weights_file import load_weights, other_schema, read_facts, save_weights
 
-FORMAT = "siggen-diagnostics network on gears 1"
+FORMAT = "siggen-diagnostics network on gears 2"
 
 WIDTHS = (24, 32, 48)
 """Channels of the stages; a maximum over two steps stands between them."""
@@ -32,8 +34,14 @@ TOLD, DROPPED = 48, 0.3
 """Numbers that tell of a gear, and the share of what goes into them that is dropped while learning."""
 QUANTILES = (0.05, 0.5, 0.95)
 """Of the size: an interval of 90 %."""
+LEVELS = 401
+"""Quantiles that are kept of what was said of unseen records."""
+GEARS = ("pinion", "gear")
+"""Whose averages a record has, in order of power."""
 NOWHERE = -1
 """Gear or kind of a record without damage, or with damage in several gears."""
+BATCH = 256
+"""Channels of records that are asked at a time."""
 WEIGHTS = {"damage": 1.0, "kind": 0.3, "gear": 0.3, "size": 0.3}
 """Shares of the heads in the loss: damage is what all others rest on."""
 
@@ -79,6 +87,60 @@ class Told:
     size: torch.Tensor
 
 
+class Limits(nn.Module):  # type: ignore[misc]
+    """What was said of unseen gearboxes, alone and beside (rows 0 and 1): what answers are held against.
+
+    Attributes
+    ----------
+    average_centre, average_spread, average_precision : (28,), (28,), (28, 28) float64
+        Of the numbers of averages, see `diagnostics.training.likeness`.
+    seen_centre, seen_precision : (2, 96), (2, 96, 96) float64
+        Of what the heads rest on.
+    farthest : (2, 3) float64
+        Distances that are like training.
+    sound, damaged : (2, 401) float64
+        Log odds of damage of unseen records without and with damage, quantiles from 0 to 1.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        numbers, seen = len(GEARS) * NUMBERS, 2 * TOLD
+        for name, shape in (
+            ("average_centre", (numbers,)),
+            ("average_spread", (numbers,)),
+            ("average_precision", (numbers, numbers)),
+            ("seen_centre", (2, seen)),
+            ("seen_precision", (2, seen, seen)),
+            ("farthest", (2, 3)),
+            ("sound", (2, LEVELS)),
+            ("damaged", (2, LEVELS)),
+        ):
+            self.register_buffer(name, torch.zeros(shape, dtype=torch.float64))
+
+    def distances(self, averages: np.ndarray, seen: np.ndarray, side: int) -> np.ndarray:
+        """Return all distances of records, (records, 3), each of the channel that lies farthest.
+
+        Parameters
+        ----------
+        averages : (records, channels, 28) float64
+            See `average_numbers`.
+        seen : (records, channels, 96) float64
+            See `seen_numbers`.
+        side : int
+            0 alone, 1 beside a healthy record.
+        """
+        found = (
+            distances(averages, self.average_centre, self.average_precision),
+            farthest(averages, self.average_centre, self.average_spread),
+            distances(seen, self.seen_centre[side], self.seen_precision[side]),
+        )
+        return np.stack([each.max(axis=1) for each in found], axis=1)
+
+    def said(self, side: int, share: float) -> float:
+        """Return the log odds that a share of unseen sound records stay below."""
+        return float(np.quantile(self.sound[side].numpy(), share))
+
+
 class GearboxNetwork(nn.Module):  # type: ignore[misc]
     """Rows (records, gears, 4, steps) of one channel, see `gear_rows`, to what is told of it.
 
@@ -105,10 +167,17 @@ class GearboxNetwork(nn.Module):  # type: ignore[misc]
         self.damage, self.kind = nn.Linear(2 * TOLD, 1), nn.Linear(2 * TOLD, len(self.kinds))
         self.gear, self.size = nn.Linear(TOLD, 1), nn.Linear(2 * TOLD, len(QUANTILES))
         self.register_buffer("size_centre", torch.tensor([0.0, 1.0]))
-        self.register_buffer("size_widening", torch.zeros(1))
+        self.register_buffer("size_widening", torch.zeros(2))
+        self.limits = Limits()
 
     def forward(self, rows: torch.Tensor) -> Told:
         """Return what is told; a record whose rows of change are zero stands alone."""
+        each, whole = self.seen(rows)
+        size = self._quantiles(whole, stands_beside(rows))
+        return Told(self.damage(whole)[:, 0], self.kind(whole), self.gear(each)[..., 0], size)
+
+    def seen(self, rows: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+        """Return what all heads rest on: numbers of gears (records, gears, 48), and of the gearbox (records, 96)."""
         records, gears = rows.shape[:2]
         flat = rows.flatten(0, 1)
         size = torch.sqrt((flat[:, ALONE:] ** 2).mean(dim=2))
@@ -119,15 +188,19 @@ class GearboxNetwork(nn.Module):  # type: ignore[misc]
             [self.dropout(torch.cat([mapped.mean(dim=2), mapped.amax(dim=2)], dim=1)), change, beside], 1
         )
         each = nn.functional.relu(self.of_gear(pooled)).unflatten(0, (records, gears))
-        whole = torch.cat([each.amax(dim=1), each.mean(dim=1)], dim=1)
-        return Told(self.damage(whole)[:, 0], self.kind(whole), self.gear(each)[..., 0], self._quantiles(whole))
+        return each, torch.cat([each.amax(dim=1), each.mean(dim=1)], dim=1)
 
-    def _quantiles(self, whole: torch.Tensor) -> torch.Tensor:
+    def _quantiles(self, whole: torch.Tensor, beside: torch.Tensor) -> torch.Tensor:
         middle, below, above = self.size(whole).T
-        middle = self.size_centre[0] + self.size_centre[1] * middle
-        low = middle - self.size_centre[1] * nn.functional.softplus(below) - self.size_widening
-        high = middle + self.size_centre[1] * nn.functional.softplus(above) + self.size_widening
+        middle, widening = self.size_centre[0] + self.size_centre[1] * middle, self.size_widening[beside.long()]
+        low = middle - self.size_centre[1] * nn.functional.softplus(below) - widening
+        high = middle + self.size_centre[1] * nn.functional.softplus(above) + widening
         return torch.stack([low, middle, high], dim=1)
+
+
+def stands_beside(rows: torch.Tensor) -> torch.Tensor:
+    """Return which records (records,) bool stand beside a healthy one: their rows of change are not zero."""
+    return (rows[:, :, ALONE:] != 0.0).flatten(1).any(dim=1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,7 +253,7 @@ def told_loss(told: Told, truths: DamageTruth, damaged_share: float) -> torch.Te
     return loss
 
 
-def tell(network: GearboxNetwork, rows: np.ndarray, batch: int = 256) -> Told:
+def tell(network: GearboxNetwork, rows: np.ndarray, batch: int = BATCH) -> Told:
     """Return what the network says of records, as means over their channels.
 
     Parameters
@@ -191,27 +264,34 @@ def tell(network: GearboxNetwork, rows: np.ndarray, batch: int = 256) -> Told:
     batch : int
         Channels at a time.
     """
-    records, channels = rows.shape[:2]
-    flat = rows.reshape(records * channels, *rows.shape[2:])
-    with torch.no_grad():
-        parts = [
-            network(torch.from_numpy(flat[start : start + batch].astype(np.float32)))
-            for start in range(0, len(flat), batch)
-        ]
+    parts = list(_asked(network, rows, batch))
     means = (
-        torch.cat([getattr(part, name) for part in parts]).unflatten(0, (records, channels)).mean(dim=1)
+        torch.cat([getattr(part, name) for part in parts]).unflatten(0, rows.shape[:2]).mean(dim=1)
         for name in ("damage", "kind", "gear", "size")
     )
     return Told(*means)
 
 
-def save_gearbox_network(network: GearboxNetwork, path: Path) -> None:
-    """Write weights and facts, see `diagnostics.training.weights_file`."""
-    save_weights(network, path, FORMAT, {"kinds": network.kinds, "widths": network.widths})
+def seen_numbers(network: GearboxNetwork, rows: np.ndarray) -> np.ndarray:
+    """Return what the heads rest on, (records, channels, 96) float64; parameters as of `tell`."""
+    parts = [whole for _, whole in _asked(network.seen, rows, BATCH)]
+    return np.asarray(torch.cat(parts).unflatten(0, rows.shape[:2]).double().numpy())
 
 
-def load_gearbox_network(path: Path) -> GearboxNetwork:
-    """Read a network written by `save_gearbox_network`; nothing in the file is executed.
+def _asked(ask: Callable[[torch.Tensor], Any], rows: np.ndarray, batch: int) -> Iterator[Any]:
+    flat = rows.reshape(-1, *rows.shape[2:])
+    with torch.no_grad():
+        for start in range(0, len(flat), batch):
+            yield ask(torch.from_numpy(flat[start : start + batch].astype(np.float32)))
+
+
+def save_gearbox_network(network: GearboxNetwork, path: Path, facts: Mapping[str, Any]) -> None:
+    """Write weights, facts on the training and those that give the network back, see `weights_file`."""
+    save_weights(network, path, FORMAT, {**facts, "kinds": network.kinds, "widths": network.widths})
+
+
+def load_gearbox_network(path: Path) -> tuple[GearboxNetwork, dict[str, Any]]:
+    """Read a network written by `save_gearbox_network`, and its facts; nothing in the file is executed.
 
     Raises
     ------
@@ -224,4 +304,4 @@ def load_gearbox_network(path: Path) -> GearboxNetwork:
     except (KeyError, TypeError, ValueError, RuntimeError) as error:
         raise other_schema(path, error) from error
     load_weights(network, path)
-    return network
+    return network, facts

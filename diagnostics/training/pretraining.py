@@ -34,8 +34,10 @@ import siggen
 from diagnostics.base.seeding import Purpose, generator
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.statistics.evaluation import area, bootstrap_weights
-from diagnostics.training.gear_rows import ALONE, PARTS, GearLines, gear_lines, gear_rows, joined
+from diagnostics.training.gear_rows import ACCELERATION, ALONE, PARTS, GearLines, gear_lines, gear_rows, joined
 from diagnostics.training.gearbox_network import (
+    GEARS,
+    LEVELS,
     NOWHERE,
     QUANTILES,
     WIDTHS,
@@ -43,9 +45,11 @@ from diagnostics.training.gearbox_network import (
     GearboxNetwork,
     Told,
     save_gearbox_network,
+    seen_numbers,
     tell,
     told_loss,
 )
+from diagnostics.training.likeness import average_numbers, fitted
 from diagnostics.training.loop import LoopSettings, fit_network, seeded
 from diagnostics.training.referenced import healthy_references
 from diagnostics.training.splits import TEST, TRAIN, VALIDATION
@@ -59,12 +63,13 @@ LABELS = (
     "record_id", "specimen_id", "split", "state_id", "state", "operating_point_id", "repeat", "fault", "faulty_gear",
     "damaged_area_share",
 )  # fmt: skip
-GEARS, SOUND = ("pinion", "gear"), "none"
-"""Values of `faulty_gear`. All teeth are sound beside a spalled bearing, bad alignment or a loose sensor too."""
+SOUND = "none"
+"""Value of `faulty_gear`. All teeth are sound beside a spalled bearing, bad alignment or a loose sensor too."""
+SAID, LIKE = 0.99, 0.98
+"""Shares of unseen sound records of which damage is not said, and of unseen records that each distance calls alike."""
 TEETH = tuple(f"teeth_{gear}" for gear in GEARS)
 FEWEST_PAIRS, SHARES = 20, {TEST: 0.15, VALIDATION: 0.1}
 """Pairs of teeth from which on these decide the split, and the shares that are not learnt from."""
-ACCELERATION = "acceleration"
 Say: TypeAlias = Callable[[str], object]
 """Takes a line on how far it is."""
 USE = (
@@ -193,7 +198,7 @@ def pretrain(
     except _TimeIsUpError:
         say(f"{minutes:g} minutes are over; the same call goes on")
         return None
-    return _finished(home, kept, *found)
+    return _finished(home, chosen, kept, *found)
 
 
 def _check(end: float | None) -> None:
@@ -369,14 +374,22 @@ def _moved(rows: np.ndarray, rng: np.random.Generator, alone: float) -> torch.Te
 
 
 def _finished(
-    home: Path, kept: KeptRecords, network: GearboxNetwork, rows: np.ndarray, truths: DamageTruth
+    home: Path,
+    chosen: PretrainingSettings,
+    kept: KeptRecords,
+    network: GearboxNetwork,
+    rows: np.ndarray,
+    truths: DamageTruth,
 ) -> dict[str, Any]:
     """Write weights and card; return the card."""
+    sides = _sides(kept, rows)
     with seeded(0):
-        _widen(network, rows, truths, kept.of_split(VALIDATION))
-        scores = _scores(network, kept, rows, truths)
-    save_gearbox_network(network, home / WEIGHTS)
+        _widen(network, sides, truths, kept.of_split(VALIDATION))
+        _set_limits(network, kept, sides, truths)
+        scores = _scores(network, kept, sides, truths)
     plan, split, owner = json.loads((home / PLAN).read_text()), kept.labels["split"], kept.labels["specimen_id"]
+    covered = _covered(kept, chosen)
+    save_gearbox_network(network, home / WEIGHTS, covered)
     card: dict[str, Any] = plain(
         {
             "weights_sha256": hashlib.sha256((home / WEIGHTS).read_bytes()).hexdigest(),
@@ -387,6 +400,7 @@ def _finished(
                 name: {"gearboxes": int(np.unique(owner[split == name]).size), "records": int((split == name).sum())}
                 for name in (TRAIN, VALIDATION, TEST)
             },
+            "covered": covered,
             "kinds": network.kinds,
             f"scores_of_unseen_{_unseen(kept)}": scores,
             "use": USE,
@@ -403,47 +417,85 @@ def _unseen(kept: KeptRecords) -> str:
     return "gearboxes" if learnt & set(kept.labels["pair"][kept.of_split(TEST)].tolist()) else "pairs"
 
 
-def _alone(rows: np.ndarray) -> np.ndarray:
-    found = rows.copy()
-    found[..., ALONE:, :] = 0.0
-    return found
-
-
-def _has_healthy(rows: np.ndarray) -> np.ndarray:
-    return np.asarray((rows[:, :, :, ALONE:] != 0.0).any(axis=(1, 2, 3, 4)))
-
-
-def _widen(network: GearboxNetwork, rows: np.ndarray, truths: DamageTruth, places: np.ndarray) -> None:
-    """Widen intervals of the size so that they hold as many of the records left out as they say."""
-    places = places[np.isfinite(truths.size[places])]
-    if not places.size:
-        return
-    missed = []
-    beside = places[_has_healthy(rows[places])]
-    for chosen, seen in ((places, _alone(rows[places])), (beside, rows[beside])):
-        if not chosen.size:
-            continue
-        known, (low, _, high) = truths.size[chosen], tell(network, seen).size.numpy().T
-        missed.append(np.maximum(low - known, known - high))
-    found = np.sort(np.concatenate(missed))
-    rank = int(np.ceil((found.size + 1) * (QUANTILES[-1] - QUANTILES[0]))) - 1
-    network.size_widening.fill_(float(found[min(rank, found.size - 1)]))
-
-
-def _scores(network: GearboxNetwork, kept: KeptRecords, rows: np.ndarray, truths: DamageTruth) -> dict[str, Any]:
-    """Return what the network tells of unseen pairs, alone and beside a healthy record."""
-    places = kept.of_split(TEST)
-    beside = places[_has_healthy(rows[places])]
+def _covered(kept: KeptRecords, chosen: PretrainingSettings) -> dict[str, Any]:
+    """Return what a recording may be: rate [Hz], length [s], ranges of teeth, ratio and speed [Hz] of the training."""
+    designs, teeth = [siggen.load_config(name) for name in chosen.families], kept.averages.teeth
+    speeds = [point.speed_hz for design in designs for point in design.config.operating_points]
+    ends = [(one, one) if isinstance(one, float) else one.bounds() for one in speeds]
+    ratio = teeth[:, 1] / teeth[:, 0]
     return {
-        name: _scores_of(
-            tell(network, seen),
-            truths.chosen(chosen),
-            {k: v[chosen] for k, v in kept.labels.items()},
-            "specimen_id" if _unseen(kept) == "gearboxes" else "pair",
-        )
-        for name, chosen, seen in (("alone", places, _alone(rows[places])), ("beside", beside, rows[beside]))
-        if chosen.size
+        "fs_hz": designs[0].fs_hz,
+        "duration_s": designs[0].duration_s,
+        "teeth": [[int(one.min()), int(one.max())] for one in teeth.T],
+        "ratio": [float(ratio.min()), float(ratio.max())],
+        "speed_hz": [min(low for low, _ in ends), max(high for _, high in ends)],
     }
+
+
+Sides: TypeAlias = tuple[tuple[str, np.ndarray, np.ndarray], ...]
+"""Name, rows of all records, and which of them (records,) bool are seen so: alone, and beside a healthy record."""
+
+
+def _sides(kept: KeptRecords, rows: np.ndarray) -> Sides:
+    alone = rows.copy()
+    alone[..., ALONE:, :] = 0.0
+    known = np.array([found.size > 0 for found in healthy_references(kept.labels)])
+    return ("alone", alone, np.ones(len(rows), dtype=bool)), ("beside", rows, known)
+
+
+def _widen(network: GearboxNetwork, sides: Sides, truths: DamageTruth, places: np.ndarray) -> None:
+    """Widen intervals of the size so that they hold as many of the records left out as they say."""
+    for side, (_, rows, seen) in enumerate(sides):
+        own = places[np.isfinite(truths.size[places]) & seen[places]]
+        if own.size:
+            known, (low, _, high) = truths.size[own], tell(network, rows[own]).size.numpy().T
+            missed = np.sort(np.maximum(low - known, known - high))
+            rank = int(np.ceil((missed.size + 1) * (QUANTILES[-1] - QUANTILES[0]))) - 1
+            network.size_widening[side] = float(missed[min(rank, missed.size - 1)])
+
+
+def _set_limits(network: GearboxNetwork, kept: KeptRecords, sides: Sides, truths: DamageTruth) -> None:
+    """Keep what training records are like, and what is said of those of the split validation."""
+    limits, levels = network.limits, np.linspace(0.0, 1.0, LEVELS)
+    learnt, unseen = kept.of_split(TRAIN), kept.of_split(VALIDATION)
+    averages = average_numbers(kept.averages)
+    known = np.concatenate(list(averages[learnt]))
+    limits.average_centre, limits.average_precision = fitted(known)
+    limits.average_spread = torch.tensor(known.std(axis=0) + 1e-9)
+    for side, (_, rows, beside) in enumerate(sides):
+        seen = seen_numbers(network, rows)
+        limits.seen_centre[side], limits.seen_precision[side] = fitted(
+            np.concatenate(list(seen[learnt[beside[learnt]]]))
+        )
+        own = unseen[beside[unseen]] if beside[unseen].any() else unseen
+        if own.size:
+            limits.farthest[side] = torch.tensor(np.quantile(limits.distances(averages[own], seen[own], side), LIKE, 0))
+            odds, ill = tell(network, rows[own]).damage.double().numpy(), truths.damaged[own] > 0.0
+            for held, records in ((limits.sound, ~ill), (limits.damaged, ill)):
+                if records.any():
+                    held[side] = torch.tensor(np.quantile(odds[records], levels))
+
+
+def _scores(network: GearboxNetwork, kept: KeptRecords, sides: Sides, truths: DamageTruth) -> dict[str, Any]:
+    """Return what the network tells of unseen pairs, alone and beside a healthy record."""
+    found, averages = {}, average_numbers(kept.averages)
+    for side, (name, rows, seen) in enumerate(sides):
+        places = kept.of_split(TEST)
+        places = places[seen[places]]
+        if places.size:
+            told = tell(network, rows[places])
+            labels = {key: value[places] for key, value in kept.labels.items()}
+            drawn = "specimen_id" if _unseen(kept) == "gearboxes" else "pair"
+            off = network.limits.distances(averages[places], seen_numbers(network, rows[places]), side)
+            like = (off <= network.limits.farthest[side].numpy()).all(axis=1)
+            said = told.damage.double().numpy() > network.limits.said(side, SAID)
+            ill = truths.damaged[places] > 0.0
+            found[name] = _scores_of(told, truths.chosen(places), labels, drawn) | {
+                "answered": float(like.mean()),
+                "called_damaged_of_sound": float(said[like & ~ill].mean()) if (like & ~ill).any() else None,
+                "called_damaged_of_damaged": float(said[like & ill].mean()) if (like & ill).any() else None,
+            }
+    return found
 
 
 def _scores_of(told: Told, truths: DamageTruth, labels: Mapping[str, np.ndarray], drawn: str) -> dict[str, Any]:

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import argparse
 import time
-from dataclasses import replace
+from pathlib import Path
 
 import diagnostics
+from diagnostics.training.pretraining import FAMILIES
 
 
 def main() -> None:
@@ -20,12 +21,14 @@ def main() -> None:
     asked.add_argument("--minutes", type=float)
     asked.add_argument("--gearboxes", type=int, default=diagnostics.PretrainingSettings().gearboxes)
     asked.add_argument("--seed", type=int, default=0)
+    asked.add_argument("--family", choices=[Path(name).stem for name in FAMILIES], help="one of them; default: all")
     given, begun = asked.parse_args(), time.monotonic()
 
     def say(line: str) -> None:
         print(f"{(time.monotonic() - begun) / 60.0:6.1f} min  {line}", flush=True)
 
-    settings = replace(diagnostics.PretrainingSettings(), gearboxes=given.gearboxes, seed=given.seed)
+    families = tuple(name for name in FAMILIES if given.family in (None, Path(name).stem))
+    settings = diagnostics.PretrainingSettings(families, gearboxes=given.gearboxes, seed=given.seed)
     card = diagnostics.pretrain(given.folder, settings, minutes=given.minutes, say=say)
     for side, scores in (card["scores_of_unseen_pairs"] if card else {}).items():
         for name, value in scores.items():

@@ -58,7 +58,8 @@ DIAGNOSTICS = {
         "diagnostics.score_benchmark": "scoring.benchmark_scores",
         "diagnostics.make_benchmark": "bench.making", "diagnostics.commit_benchmark": "bench.making",
         "diagnostics.reveal_benchmark": "bench.making", "diagnostics.benchmark_baselines": "bench.leaderboard",
-        "diagnostics.leaderboard": "bench.leaderboard", "diagnostics.pretrain": "training.pretraining",
+        "diagnostics.leaderboard": "bench.leaderboard", "diagnostics.pretrained_features": "training.shipped_network",
+        "diagnostics.pretrain": "training.pretraining",
         "diagnostics.PretrainingSettings": "training.pretraining",
     },
     "## diagnostics.loader\n\nWindows of a set for PyTorch. [Load a set](../start/load_a_set.md) has an example.": {

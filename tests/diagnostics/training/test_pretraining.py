@@ -99,8 +99,9 @@ def test_the_file_is_small_and_gives_the_network_back(tmp_path: Path) -> None:
     rows, _ = planted(np.random.default_rng(2), 4)
     with seeded(2):
         network = GearboxNetwork(KINDS).eval()
-    save_gearbox_network(network, tmp_path / WEIGHTS)
-    again = load_gearbox_network(tmp_path / WEIGHTS)
+    save_gearbox_network(network, tmp_path / WEIGHTS, {"fs_hz": 25600.0})
+    again, facts = load_gearbox_network(tmp_path / WEIGHTS)
+    assert facts["fs_hz"] == 25600.0
     assert sum(weight.numel() for weight in network.parameters()) <= 500_000
     assert (tmp_path / WEIGHTS).stat().st_size <= 5e6
     assert again.kinds == KINDS

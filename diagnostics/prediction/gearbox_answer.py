@@ -1,0 +1,341 @@
+"""What the network that comes with the package says of a recording, without any training, or why it cannot tell.
+
+It says damage where the recording looks more like damage than 99 of 100 sound records of gearboxes that it has not
+learnt from; below it says that no damage is seen, and how many damaged records look so too. It cannot tell where the
+recording is unlike its training: by rate, length, teeth or speed, by the averages themselves, by what it makes of them,
+or because healthy recordings of the machine differ from each other as damaged ones do. Source: derived.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import torch
+
+from diagnostics.base.single_thread import single_thread
+from diagnostics.page.wording import percent
+from diagnostics.prediction.record_pieces import at_rate, cut
+from diagnostics.recordings.channel_factor import ACCELERATION_UNIT
+from diagnostics.recordings.measured_recording import MeasuredRecording
+from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
+from diagnostics.records.gear_train import pair_train
+from diagnostics.training.gear_rows import GearLines, gear_lines, gear_rows, joined
+from diagnostics.training.gearbox_network import GEARS, LEVELS, GearboxNetwork, seen_numbers, tell
+from diagnostics.training.likeness import average_numbers, mesh_over_noise
+from diagnostics.training.shipped_network import shipped_network
+from siggen.columns.drivetrain import GearTrain
+from siggen.errors import UsageError, counted
+
+DAMAGE, NOTHING, UNTOLD = "damage", "no damage seen", "cannot tell"
+SAID = 0.99
+"""Share of unseen sound records of which damage is not said."""
+SPEED_WITHIN = 1.01
+"""A mean speed scatters by less than one per cent."""
+DISTANCES = ("the averages are", "one number of the averages is", "to the network it is")
+FEWEST_MESH = 4.0
+"""Power of mesh lines over that of noise there, from which on there is a mesh: noise alone gives 1 within 0.5."""
+COMMON = 0.1
+"""Share of records from which it is told in per cent."""
+SIDES = ("alone", "beside healthy recordings")
+
+
+@dataclass(frozen=True, slots=True)
+class GearboxAnswer:
+    """What the network says of a recording.
+
+    Attributes
+    ----------
+    recording : MeasuredRecording
+        At the rate of the training.
+    pulses : ShaftPulses
+    train : GearTrain
+    side : int
+        0 alone, 1 beside healthy recordings.
+    odds : float
+        Log odds of damage, mean over pieces and channels.
+    as_odd, unseen : float
+        Shares of unseen records: sound ones with as large odds, damaged ones with as small.
+    distances, farthest : tuple of float
+        Of the averages, of their farthest number and of what the network makes of them; the largest like training.
+    kinds, gears : mapping of str to float
+        Probabilities, if there is damage.
+    size : (float, float, float)
+        Damaged share of the worst flank: 5, 50 and 95 %.
+    pieces : int
+    reasons, notes : tuple of str
+        Why it cannot tell; what the reader should know besides.
+    said : bool
+        Whether the odds are larger than those of 99 of 100 unseen sound records.
+    """
+
+    recording: MeasuredRecording
+    pulses: ShaftPulses
+    train: GearTrain
+    side: int
+    odds: float
+    as_odd: float
+    unseen: float
+    distances: tuple[float, ...]
+    farthest: tuple[float, ...]
+    kinds: Mapping[str, float]
+    gears: Mapping[str, float]
+    size: tuple[float, float, float]
+    pieces: int
+    reasons: tuple[str, ...]
+    notes: tuple[str, ...]
+    said: bool
+
+    @property
+    def verdict(self) -> str:
+        """Damage, no damage seen, or cannot tell."""
+        return UNTOLD if self.reasons else DAMAGE if self.said else NOTHING
+
+    @property
+    def headline(self) -> str:
+        """What was found, in one line."""
+        if self.reasons:
+            return f"{UNTOLD}: {self.reasons[0]}"
+        if not self.said:
+            return f"{NOTHING}; {percent(self.unseen)} of damaged records of unseen gearboxes look no worse"
+        kind, gear = (max(of, key=lambda name: of[name]) for of in (self.kinds, self.gears))
+        return (
+            f"{DAMAGE}, most like {kind} ({percent(self.kinds[kind])}) of the {gear} ({percent(self.gears[gear])}); "
+            f"{self._rarity} look as bad"
+        )
+
+    @property
+    def _rarity(self) -> str:
+        if self.as_odd > COMMON:
+            return f"{percent(self.as_odd)} of sound records"
+        rare = f"1 in {round(1.0 / self.as_odd)}" if self.as_odd > 1.0 / LEVELS else f"fewer than 1 in {LEVELS - 1}"
+        return f"{rare} sound records"
+
+    @property
+    def rows(self) -> list[tuple[str, str]]:
+        """Label and text of everything that is said."""
+        shaft = self.train.gears[0]
+        mesh_hz = self.pulses.speed_hz * float(shaft.teeth or 0)
+        found = [
+            ("answer", self.verdict),
+            ("seen", f"{SIDES[self.side]}, {counted(self.pieces, 'piece')}"),
+            (f"{shaft.name} speed", f"{self.pulses.speed_hz:.4f} Hz ({self.pulses.origin}); mesh {mesh_hz:.2f} Hz"),
+            ("log odds of damage", f"{self.odds:.2f}; {self._rarity} reach it"),
+        ]
+        if self.verdict == DAMAGE:
+            low, middle, high = self.size
+            found += [
+                ("kind", _shares(self.kinds)),
+                ("gear", _shares(self.gears)),
+                ("damaged flank share", f"{middle:.2g}, with 90 % between {low:.2g} and {high:.2g}"),
+            ]
+        names = ("distance of averages", "farthest number", "distance in network")
+        for name, off, most in zip(names, self.distances, self.farthest, strict=True):
+            found.append((name, f"{off:.2f}, at most {most:.2f}"))
+        found += [("cannot tell because", reason) for reason in self.reasons]
+        return [*found, *(("note", note) for note in self.notes)]
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """Everything for JSON."""
+        return {
+            "file": str(self.recording.path),
+            "answer": self.verdict,
+            "reasons": list(self.reasons),
+            "seen": SIDES[self.side],
+            "log_odds": self.odds,
+            "sound_records_as_bad": self.as_odd,
+            "damaged_records_no_worse": self.unseen,
+            "kinds": dict(self.kinds),
+            "gears": dict(self.gears),
+            "damaged_area_share": dict(zip(("low", "middle", "high"), self.size, strict=True)),
+            "distances": list(self.distances),
+            "distances_at_most": list(self.farthest),
+            "speed_hz": self.pulses.speed_hz,
+            "speed_from": self.pulses.origin,
+            **self.pulses.facts,
+            "teeth": [gear.teeth for gear in self.train.gears],
+            "pieces": self.pieces,
+            "notes": list(self.notes),
+        }
+
+
+def _shares(of: Mapping[str, float]) -> str:
+    return ", ".join(f"{name} {share:.2f}" for name, share in sorted(of.items(), key=lambda item: -item[1]))
+
+
+@single_thread()
+def gearbox_answer(
+    recording: MeasuredRecording,
+    teeth: tuple[int, int],
+    speed_range_hz: tuple[float, float] | None = None,
+    references: Sequence[MeasuredRecording] = (),
+    released: tuple[GearboxNetwork, Mapping[str, Any]] | None = None,
+) -> GearboxAnswer:
+    """Return what the network says of a recording.
+
+    Parameters
+    ----------
+    recording : MeasuredRecording
+        Accelerations.
+    teeth : (int, int)
+        Of both gears.
+    speed_range_hz : (float, float), optional
+        Where to look for the first shaft's speed without a tacho.
+    references : sequence of MeasuredRecording
+        Of the same machine in healthy state, at the same speed and load.
+    released : (GearboxNetwork, mapping), optional
+        Network and what it covers; default: the one that comes with the package.
+
+    Raises
+    ------
+    UsageError
+        If a channel is no acceleration, pulses cannot be found, or channels of a reference are others.
+    """
+    network, covered = released or shipped_network()
+    train = pair_train(teeth)
+    (slow, pulses, lines), *healthy = (
+        _averaged(one, train, speed_range_hz, covered) for one in (recording, *references)
+    )
+    for other in references:
+        _check_reference(recording, other)
+    notes = []
+    if healthy and any(own.angle is not None for own in (pulses, *(found[1] for found in healthy))):
+        notes.append("without a tacho healthy recordings cannot be laid over a recording: seen alone")
+        healthy = []
+    reasons = [*_uncovered(recording, slow, pulses, teeth, covered)]
+    if not (mesh := float(np.median(mesh_over_noise(lines)))) >= FEWEST_MESH:
+        reasons.append(
+            f"the mesh lines have {mesh:.2g} times the power of noise, at least {FEWEST_MESH:g} are needed: are teeth "
+            "and speed right, and does the sensor see these gears?"
+        )
+    for other, (_, own, _) in zip(references, healthy, strict=False):
+        if not 1.0 / SPEED_WITHIN <= own.speed_hz / pulses.speed_hz <= SPEED_WITHIN:
+            reasons.append(
+                f"reference {other.path.name}: the speed is {own.speed_hz:.4g} Hz, the recording has "
+                f"{pulses.speed_hz:.4g} Hz; healthy recordings count at the same speed and load"
+            )
+    side = int(bool(healthy))
+    asked = _Asked(network, side, lines, joined([found[2] for found in healthy]) if healthy else None)
+    odds, distances = asked.odds(), asked.distances()
+    limits = network.limits
+    farthest = limits.farthest[side].numpy()
+    for name, off, most in zip(DISTANCES, distances, farthest, strict=True):
+        if not off <= most:
+            reasons.append(f"unlike the training: {name} {off:.2f} spreads off, at most {most:.2f} there")
+    said = limits.said(side, SAID)
+    for place, (other, _) in enumerate(zip(references, healthy, strict=False)):
+        rest = [found[2] for number, found in enumerate(healthy) if number != place]
+        if rest and _Asked(network, side, healthy[place][2], joined(rest)).odds() > said:
+            reasons.append(
+                f"reference {other.path.name} differs from the other healthy recordings as damaged ones do; "
+                "give recordings at one load"
+            )
+    told = asked.told
+    low, middle, high = np.exp(told.size.double().mean(dim=0).numpy()).tolist()
+    return GearboxAnswer(
+        recording=slow,
+        pulses=pulses,
+        train=train,
+        side=side,
+        odds=odds,
+        as_odd=float((limits.sound[side].numpy() >= odds).mean()),
+        unseen=float((limits.damaged[side].numpy() <= odds).mean()),
+        distances=tuple(distances.tolist()),
+        farthest=tuple(farthest.tolist()),
+        kinds=_probabilities(told.kind, network.kinds),
+        gears=_probabilities(told.gear, GEARS),
+        size=(low, middle, high),
+        pieces=len(lines.lines),
+        reasons=tuple(dict.fromkeys(reasons)),
+        notes=tuple(notes),
+        said=odds > said,
+    )
+
+
+def _probabilities(logits: torch.Tensor, names: Sequence[str]) -> dict[str, float]:
+    return dict(zip(names, logits.mean(dim=0).softmax(dim=0).double().tolist(), strict=True))
+
+
+class _Asked:
+    """A recording's pieces as the network sees them."""
+
+    def __init__(self, network: GearboxNetwork, side: int, lines: GearLines, healthy: GearLines | None) -> None:
+        self.network, self.side, self.lines = network, side, lines
+        self.rows = gear_rows(lines, healthy)
+        self.told = tell(network, self.rows)
+
+    def odds(self) -> float:
+        """Return the mean log odds of the pieces."""
+        return float(self.told.damage.double().mean())
+
+    def distances(self) -> np.ndarray:
+        """Return the median of all distances over pieces, (3,)."""
+        seen = seen_numbers(self.network, self.rows)
+        return np.asarray(
+            np.median(self.network.limits.distances(average_numbers(self.lines), seen, self.side), axis=0)
+        )
+
+
+def _averaged(
+    recording: MeasuredRecording,
+    train: GearTrain,
+    speed_range_hz: tuple[float, float] | None,
+    covered: Mapping[str, Any],
+) -> tuple[MeasuredRecording, ShaftPulses, GearLines]:
+    """Return a recording at the rate of the training, its pulses, and the averages of its pieces."""
+    for name, unit in recording.units.items():
+        if unit != ACCELERATION_UNIT:
+            raise UsageError(
+                f"{recording.path}: channel {name} is in {unit}; allowed: accelerations. Name those columns, or give "
+                "a model trained on such a set: predict MODEL FILE"
+            )
+    slow = at_rate(recording, covered["fs_hz"])
+    pulses = shaft_pulses(slow, train, speed_range_hz)
+    pieces = cut(slow, pulses, covered["duration_s"])
+    found = [gear_lines(channels, times_s, slow.fs_hz, train) for channels, times_s in pieces if times_s.size > 1]
+    if not found:
+        raise UsageError(f"{recording.path}: no piece of {covered['duration_s']:g} s holds a whole turn; record longer")
+    return slow, pulses, joined(found)
+
+
+def _check_reference(recording: MeasuredRecording, other: MeasuredRecording) -> None:
+    if tuple(other.channels) != tuple(recording.channels):
+        raise UsageError(
+            f"{other.path}: has the channels {', '.join(other.channels)}, the recording "
+            f"{', '.join(recording.channels)}; allowed: the same sensors in the same order"
+        )
+    if any(np.array_equal(signal, other.channels[name]) for name, signal in recording.channels.items()):
+        raise UsageError(
+            f"{other.path}: has the same samples as the recording {recording.path}; give another recording of the "
+            "machine in healthy state, or leave --reference out"
+        )
+
+
+def _uncovered(
+    source: MeasuredRecording,
+    slow: MeasuredRecording,
+    pulses: ShaftPulses,
+    teeth: tuple[int, int],
+    covered: Mapping[str, Any],
+) -> list[str]:
+    """Return what is known of a recording and was never learnt from."""
+    found, (low_hz, high_hz) = [], covered["speed_hz"]
+    for gear, z, (low, high) in zip(GEARS, teeth, covered["teeth"], strict=True):
+        if not low <= z <= high:
+            found.append(f"the {gear} has {z} teeth, training covers {low} to {high}")
+    low, high = covered["ratio"]
+    if not low <= teeth[1] / teeth[0] <= high:
+        found.append(f"the ratio is {teeth[1] / teeth[0]:.3g}, training covers {low:.3g} to {high:.3g}")
+    if source.fs_hz < covered["fs_hz"] * (1.0 - 1e-3):
+        found.append(
+            f"the sampling rate is {source.fs_hz:g} Hz, training has {covered['fs_hz']:g} Hz: the band above "
+            f"{0.5 * source.fs_hz:g} Hz is missing"
+        )
+    if not low_hz / SPEED_WITHIN <= pulses.speed_hz <= high_hz * SPEED_WITHIN:
+        found.append(f"the pinion's speed is {pulses.speed_hz:.4g} Hz, training covers {low_hz:g} to {high_hz:g} Hz")
+    if slow.duration_s < covered["duration_s"] * (1.0 - 1e-3):
+        found.append(f"the recording lasts {slow.duration_s:.3g} s, training takes {covered['duration_s']:g} s")
+    return found

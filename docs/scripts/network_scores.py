@@ -1,0 +1,164 @@
+"""The network that comes along against logistic regression: `python docs/scripts/network_scores.py SET_OR_BENCHMARK`.
+
+Of a set every gearbox is scored by what has learnt on the others (five folds); of a benchmark test parts are scored by
+what has learnt on the part to learn from, and labels are those of `labels_of`. Prints Markdown: AUC of damage of the
+network without training, of a regression on what it says, of logistic regression on all indicators, and the difference
+of the last two, paired on the same gearboxes; limits of 95 % over gearboxes. Of a set also by state. `--learn 24` lets
+folds learn from so many gearboxes only. Another network: `--network runs/pretrained/network.safetensors`.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+import diagnostics
+import siggen
+from diagnostics.base.single_thread import single_thread
+from diagnostics.bench.leaderboard import benchmark_records
+from diagnostics.judging.alarms import HEADS_STRENGTH
+from diagnostics.judging.evaluation import Design
+from diagnostics.judging.learners import Odds
+from diagnostics.records.state_classes import HEALTHY
+from diagnostics.scoring.benchmark import is_benchmark, labelled, labels_of
+from diagnostics.statistics.evaluation import Interval, bootstrap_weights, interval, weighted_auc
+from diagnostics.training.classifiers import LogisticBaseline
+from diagnostics.training.feature_classifier import DEFAULT_STRENGTH
+from diagnostics.training.gearbox_network import load_gearbox_network
+from diagnostics.training.referenced import healthy_references, log_mean, log_values
+from diagnostics.training.shipped_network import gear_averages, heads, shipped_network
+
+SIDES = ("alone", "beside")
+
+
+class Judged(NamedTuple):
+    """Records that are scored: damage (n,), gearbox (n,), and the scores (n,) of three detectors."""
+
+    part: str
+    side: str
+    damaged: np.ndarray
+    gearbox: np.ndarray
+    scores: tuple[np.ndarray, ...]
+
+
+def learnt(
+    values: np.ndarray, said: np.ndarray, damaged: np.ndarray, gearbox: np.ndarray, asked: np.ndarray, *, beside: bool
+) -> tuple[np.ndarray, ...]:
+    """Return the scores of the asked records (n,) bool by what learns on those given by `damaged` among the others."""
+    own = Odds(LogisticBaseline((HEADS_STRENGTH,), take_logarithms=False))
+    all_indicators = Odds(LogisticBaseline((DEFAULT_STRENGTH,), take_logarithms=not beside))
+    known = ~asked
+    found = [
+        model.fit(X[known], damaged[known], gearbox[known]).score(X[asked])
+        for model, X in ((own, said), (all_indicators, values))
+    ]
+    return said[asked, 0], *found
+
+
+def of_set(path: Path, few: int | None, seed: int, network: object) -> Iterator[Judged]:
+    """Yield what is judged of a set, alone and beside."""
+    dataset = siggen.open(path)
+    table, lines = diagnostics.table(dataset), gear_averages(dataset, 2)
+    damaged, gearbox = table.labels["fault"] != HEALTHY, table.groups
+    references, logs = healthy_references(table.labels), log_values(table.values)
+    for side in SIDES:
+        beside = side == "beside"
+        said = heads(lines, lines, references, network) if beside else heads(lines, network=network)
+        values = np.stack(
+            [logs[k] - log_mean(table.values[known]) if known.size else logs[k] for k, known in enumerate(references)]
+        )
+        seen = np.array([known.size > 0 for known in references]) if beside else np.ones(len(said), dtype=bool)
+        values, said, ill, owner = (values if beside else table.values)[seen], said[seen], damaged[seen], gearbox[seen]
+        values = values[:, np.isfinite(values).any(axis=0)]
+        fold, scores = Design(folds=5, owner=2000).dealt(owner, seed)[0], np.zeros((3, ill.size))
+        for held in np.unique(fold):
+            asked = fold == held
+            others = np.unique(owner[~asked])
+            chosen = asked if few is None else asked | ~np.isin(owner, others[:few])
+            part = asked | ~chosen
+            rows = learnt(values[part], said[part], ill[part], owner[part], asked[part], beside=beside)
+            scores[:, asked] = rows
+        state = table.labels["state"][seen]
+        yield Judged(path.name, side, ill, owner, tuple(scores))
+        for name in dict.fromkeys(state[ill].tolist()):
+            own = ~ill | (state == name)
+            yield Judged(name, side, ill[own], owner[own], tuple(scores[:, own]))
+
+
+def of_benchmark(path: Path, network: object) -> Iterator[Judged]:
+    """Yield what is judged of every test part, alone and beside."""
+    benchmark = diagnostics.open_benchmark(path)
+    records, truth = benchmark_records(benchmark, 2), labels_of(benchmark, None)
+    count, labels = records.learn, records.matrix.labels
+    fault = {
+        row["record_id"]: (name, row["fault"])
+        for name in benchmark.parts
+        for row in labelled(benchmark.part(name), truth, name).labels().to_pylist()
+    }
+    told = [fault[number] for number in labels["record_id"][count:].tolist()]
+    damaged = np.array([*(labels["fault"][:count] != HEALTHY), *(own != HEALTHY for _, own in told)])
+    part = np.array([*[""] * count, *(name for name, _ in told)])
+    logs, lines = log_values(records.matrix.values), records.gears
+    assert lines is not None
+    for side in SIDES:
+        beside = side == "beside"
+        kept = np.flatnonzero(records.asked & (records.reference >= 0 if beside else records.alone))
+        own, reference = lines.chosen(kept), records.reference[kept]
+        said = heads(own, lines, reference[:, None], network) if beside else heads(own, network=network)
+        values = logs[kept] - logs[reference] if beside else records.matrix.values[kept]
+        asked = kept >= count
+        scores = learnt(values, said, damaged[kept], labels["specimen_id"][kept], asked, beside=beside)
+        for name in benchmark.parts:
+            rows = part[kept][asked] == name
+            if rows.any():
+                yield Judged(
+                    name, side, damaged[kept][asked][rows], labels["specimen_id"][kept][asked][rows],
+                    tuple(score[rows] for score in scores),
+                )  # fmt: skip
+
+
+def areas(judged: Judged, seed: int) -> tuple[np.ndarray, ...]:
+    """Return the resampled AUC of the three detectors."""
+    weights = bootstrap_weights(judged.gearbox, seed)
+    return tuple(weighted_auc(score, judged.damaged, weights, judged.gearbox) for score in judged.scores)
+
+
+def row(name: str, side: str, gearboxes: int, found: tuple[np.ndarray, ...]) -> str:
+    """Return a line of the table."""
+    cells: list[Interval] = [*(interval(one, gearboxes) for one in found), interval(found[1] - found[2], gearboxes)]
+    said = " | ".join(f"{one.value:.3f} ({one.low:.3f} to {one.high:.3f})" for one in cells)
+    return f"| {name} | {side} | {gearboxes} | {said} |"
+
+
+@single_thread()
+def main() -> None:
+    """Print the table."""
+    asked = argparse.ArgumentParser(description=__doc__)
+    asked.add_argument("path", type=Path)
+    asked.add_argument("--learn", type=int)
+    asked.add_argument("--network", type=Path)
+    asked.add_argument("--seed", type=int, default=0)
+    given = asked.parse_args()
+    network = load_gearbox_network(given.network)[0] if given.network else shipped_network()[0]
+    print("| part | seen | gearboxes | network, untrained | regression on it | on indicators | difference |")
+    print("|---" * 7 + "|")
+    if not is_benchmark(given.path):
+        for judged in of_set(given.path, given.learn, given.seed, network):
+            found = areas(judged, given.seed)
+            print(row(judged.part, judged.side, np.unique(judged.gearbox).size, found), flush=True)
+        return
+    parts = [(judged, areas(judged, k)) for k, judged in enumerate(of_benchmark(given.path, network))]
+    for judged, found in parts:
+        print(row(judged.part, judged.side, np.unique(judged.gearbox).size, found), flush=True)
+    for side in SIDES:  # gearboxes of different parts are independent
+        own = [(np.unique(judged.gearbox).size, found) for judged, found in parts if judged.side == side]
+        means = tuple(np.mean([found[k] for _, found in own], axis=0) for k in range(3))
+        print(row("mean of parts", side, sum(count for count, _ in own), means))
+
+
+if __name__ == "__main__":  # workers import the script
+    main()
