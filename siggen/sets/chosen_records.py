@@ -65,7 +65,8 @@ def simulate_records(design: SetDesign, record_ids: Sequence[int], workers: int 
     with closing(results(workers_of(None, workers), simulation, tasks)) as answers:
         made = [found for _, found in sorted(answers, key=lambda answer: answer[0])]
     columns = simulation.columns
-    rows = pa.Table.from_batches([one.rows for one in made], record_schema(columns))
+    schema = record_schema(columns)  # Arrow forgets what elements of signals are called on the way between processes
+    rows = pa.Table.from_batches([one.rows.cast(schema) for one in made], schema)
     damage = [row for record_id in rows["record_id"].to_pylist() for row in physics.damage_rows(design, [record_id])]
     return ChosenRecords(
         rows,
