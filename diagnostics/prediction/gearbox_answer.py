@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 import torch
 
-from diagnostics.base.single_thread import single_thread
 from diagnostics.page.wording import percent
 from diagnostics.prediction.record_pieces import at_rate, cut
 from diagnostics.recordings.channel_factor import ACCELERATION_UNIT
@@ -166,7 +165,6 @@ def _shares(of: Mapping[str, float]) -> str:
     return ", ".join(f"{name} {share:.2f}" for name, share in sorted(of.items(), key=lambda item: -item[1]))
 
 
-@single_thread()
 def gearbox_answer(
     recording: MeasuredRecording,
     teeth: tuple[int, int],

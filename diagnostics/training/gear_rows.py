@@ -135,7 +135,7 @@ def gear_rows(
         found[:, :, gear, 1] = _unit(_wave(lines))
         if healthy is None:
             continue
-        for record, known in enumerate(references or ()):
+        for record, known in enumerate(() if references is None else references):
             if known.size:
                 found[record, :, gear, ALONE:] = _changed(records, residual[record], record, healthy, known, gear)
     return found

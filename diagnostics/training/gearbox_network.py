@@ -22,6 +22,7 @@ from torch import nn
 
 from diagnostics.training.gear_rows import ALONE, ROWS
 from diagnostics.training.likeness import NUMBERS, distances, farthest
+from diagnostics.training.loop import in_one_thread
 from diagnostics.training.weights_file import load_weights, other_schema, read_facts, save_weights
 
 FORMAT = "siggen-diagnostics network on gears 2"
@@ -280,9 +281,10 @@ def seen_numbers(network: GearboxNetwork, rows: np.ndarray) -> np.ndarray:
 
 def _asked(ask: Callable[[torch.Tensor], Any], rows: np.ndarray, batch: int) -> Iterator[Any]:
     flat = rows.reshape(-1, *rows.shape[2:])
-    with torch.no_grad():
-        for start in range(0, len(flat), batch):
-            yield ask(torch.from_numpy(flat[start : start + batch].astype(np.float32)))
+    for start in range(0, len(flat), batch):
+        with torch.no_grad(), in_one_thread():
+            said = ask(torch.from_numpy(flat[start : start + batch].astype(np.float32)))
+        yield said
 
 
 def save_gearbox_network(network: GearboxNetwork, path: Path, facts: Mapping[str, Any]) -> None:

@@ -154,17 +154,20 @@ def _weights(network: nn.Module) -> dict[str, torch.Tensor]:
 
 
 @contextmanager
-def seeded(seed: int, device: str = "cpu") -> Iterator[None]:
-    """Draw by a seed, and sum in one order whatever the number of cores; generators are given back as they were.
-
-    Small layers gain nothing from more threads anyway.
-    """
-    devices = [torch.cuda.current_device()] if torch.device(device).type == "cuda" else []
+def in_one_thread() -> Iterator[None]:
+    """Sum in one order whatever the number of cores; small layers gain nothing from more threads anyway."""
     before = torch.get_num_threads()
     torch.set_num_threads(1)
     try:
-        with torch.random.fork_rng(devices=devices):
-            torch.manual_seed(seed)
-            yield
+        yield
     finally:
         torch.set_num_threads(before)
+
+
+@contextmanager
+def seeded(seed: int, device: str = "cpu") -> Iterator[None]:
+    """Draw by a seed, and in one thread; generators are given back as they were."""
+    devices = [torch.cuda.current_device()] if torch.device(device).type == "cuda" else []
+    with in_one_thread(), torch.random.fork_rng(devices=devices):
+        torch.manual_seed(seed)
+        yield

@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 import torch
 
-from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.workers import mapped
 from diagnostics.records.gear_train import meshes_of
@@ -61,7 +60,6 @@ def _averages(channels: Sequence[str], record: Recording) -> GearLines:
     return gear_lines(own, record.tacho_s, record.fs_hz, record.train)
 
 
-@single_thread()
 def heads(
     records: GearLines,
     healthy: GearLines | None = None,
