@@ -2,9 +2,10 @@
 
 Of a set every gearbox is scored by what has learnt on the others (five folds); of a benchmark test parts are scored by
 what has learnt on the part to learn from, and labels are those of `labels_of`. Prints Markdown: AUC of damage of the
-network without training, of a regression on what it says, of logistic regression on all indicators, and the difference
-of the last two, paired on the same gearboxes; limits of 95 % over gearboxes. Of a set also by state. `--learn 24` lets
-folds learn from so many gearboxes only. Another network: `--network runs/pretrained/network.safetensors`.
+network without training, of a regression on what it says, of logistic regression and gradient boosting on all
+indicators, and differences of the second from both, paired on the same gearboxes; limits of 95 % over gearboxes. Of a
+set also by state. `--learn 24` lets folds learn from so many gearboxes only. Another network: `--network
+runs/pretrained/network.safetensors`.
 """
 
 from __future__ import annotations
@@ -25,8 +26,8 @@ from diagnostics.judging.evaluation import Design
 from diagnostics.judging.learners import Odds
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.scoring.benchmark import is_benchmark, labelled, labels_of
-from diagnostics.statistics.evaluation import Interval, bootstrap_weights, interval, weighted_auc
-from diagnostics.training.classifiers import LogisticBaseline
+from diagnostics.statistics.evaluation import bootstrap_weights, interval, weighted_auc
+from diagnostics.training.classifiers import DEFAULT_TREES, BoostingBaseline, LogisticBaseline
 from diagnostics.training.feature_classifier import DEFAULT_STRENGTH
 from diagnostics.training.gearbox_network import load_gearbox_network
 from diagnostics.training.referenced import healthy_references, log_mean, log_values
@@ -36,7 +37,7 @@ SIDES = ("alone", "beside")
 
 
 class Judged(NamedTuple):
-    """Records that are scored: damage (n,), gearbox (n,), and the scores (n,) of three detectors."""
+    """Records that are scored: damage (n,), gearbox (n,), and the scores (n,) of four detectors."""
 
     part: str
     side: str
@@ -50,11 +51,12 @@ def learnt(
 ) -> tuple[np.ndarray, ...]:
     """Return the scores of the asked records (n,) bool by what learns on those given by `damaged` among the others."""
     own = Odds(LogisticBaseline((HEADS_STRENGTH,), take_logarithms=False))
-    all_indicators = Odds(LogisticBaseline((DEFAULT_STRENGTH,), take_logarithms=not beside))
+    on_indicators = Odds(LogisticBaseline((DEFAULT_STRENGTH,), take_logarithms=not beside))
+    boosted = Odds(BoostingBaseline(0, DEFAULT_TREES))
     known = ~asked
     found = [
         model.fit(X[known], damaged[known], gearbox[known]).score(X[asked])
-        for model, X in ((own, said), (all_indicators, values))
+        for model, X in ((own, said), (on_indicators, values), (boosted, values))
     ]
     return said[asked, 0], *found
 
@@ -74,7 +76,7 @@ def of_set(path: Path, few: int | None, seed: int, network: object) -> Iterator[
         seen = np.array([known.size > 0 for known in references]) if beside else np.ones(len(said), dtype=bool)
         values, said, ill, owner = (values if beside else table.values)[seen], said[seen], damaged[seen], gearbox[seen]
         values = values[:, np.isfinite(values).any(axis=0)]
-        fold, scores = Design(folds=5, owner=2000).dealt(owner, seed)[0], np.zeros((3, ill.size))
+        fold, scores = Design(folds=5, owner=2000).dealt(owner, seed)[0], np.zeros((4, ill.size))
         for held in np.unique(fold):
             asked = fold == held
             others = np.unique(owner[~asked])
@@ -122,14 +124,15 @@ def of_benchmark(path: Path, network: object) -> Iterator[Judged]:
 
 
 def areas(judged: Judged, seed: int) -> tuple[np.ndarray, ...]:
-    """Return the resampled AUC of the three detectors."""
+    """Return the resampled AUC of the four detectors."""
     weights = bootstrap_weights(judged.gearbox, seed)
     return tuple(weighted_auc(score, judged.damaged, weights, judged.gearbox) for score in judged.scores)
 
 
 def row(name: str, side: str, gearboxes: int, found: tuple[np.ndarray, ...]) -> str:
     """Return a line of the table."""
-    cells: list[Interval] = [*(interval(one, gearboxes) for one in found), interval(found[1] - found[2], gearboxes)]
+    differences = (found[1] - found[2], found[1] - found[3])
+    cells = [interval(one, gearboxes) for one in (*found, *differences)]
     said = " | ".join(f"{one.value:.3f} ({one.low:.3f} to {one.high:.3f})" for one in cells)
     return f"| {name} | {side} | {gearboxes} | {said} |"
 
@@ -144,8 +147,10 @@ def main() -> None:
     asked.add_argument("--seed", type=int, default=0)
     given = asked.parse_args()
     network = load_gearbox_network(given.network)[0] if given.network else shipped_network()[0]
-    print("| part | seen | gearboxes | network, untrained | regression on it | on indicators | difference |")
-    print("|---" * 7 + "|")
+    print(
+        "| part | seen | gearboxes | network | regression on it | logistic | boosting | over logistic | over boosting |"
+    )
+    print("|---" * 9 + "|")
     if not is_benchmark(given.path):
         for judged in of_set(given.path, given.learn, given.seed, network):
             found = areas(judged, given.seed)
@@ -156,7 +161,7 @@ def main() -> None:
         print(row(judged.part, judged.side, np.unique(judged.gearbox).size, found), flush=True)
     for side in SIDES:  # gearboxes of different parts are independent
         own = [(np.unique(judged.gearbox).size, found) for judged, found in parts if judged.side == side]
-        means = tuple(np.mean([found[k] for _, found in own], axis=0) for k in range(3))
+        means = tuple(np.mean([found[k] for _, found in own], axis=0) for k in range(4))
         print(row("mean of parts", side, sum(count for count, _ in own), means))
 
 
