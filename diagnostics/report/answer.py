@@ -222,7 +222,7 @@ def answer_figure(detectors: Detectors) -> Figure | None:
         _show_dashes(axes[1, 0], kinds, 0.15 * len(panels))
         shown = [family for family in LOOKS if any(family in side for _, side in panels)]
         figure.legend(
-            *_legend(shown), loc="outside upper left", ncols=5, fontsize=9, handletextpad=0.3, columnspacing=1.2
+            *_legend(shown), loc="outside upper left", ncols=3, fontsize=9, handletextpad=0.3, columnspacing=1.2
         )
     return figure
 
