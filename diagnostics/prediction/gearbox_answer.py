@@ -22,15 +22,13 @@ from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
 from diagnostics.records.gear_train import pair_train
 from diagnostics.training.gear_rows import GearLines, gear_lines, gear_rows, joined
-from diagnostics.training.gearbox_network import GEARS, LEVELS, GearboxNetwork, seen_numbers, tell
+from diagnostics.training.gearbox_network import GEARS, LEVELS, SAID, GearboxNetwork, seen_numbers, tell
 from diagnostics.training.likeness import average_numbers, mesh_over_noise
 from diagnostics.training.shipped_network import shipped_network
 from siggen.columns.drivetrain import GearTrain
 from siggen.errors import UsageError, counted
 
 DAMAGE, NOTHING, UNTOLD = "damage", "no damage seen", "cannot tell"
-SAID = 0.99
-"""Share of unseen sound records of which damage is not said."""
 SPEED_WITHIN = 1.01
 """A mean speed scatters by less than one per cent."""
 DISTANCES = ("the averages are", "one number of the averages is", "to the network it is")

@@ -41,6 +41,8 @@ GEARS = ("pinion", "gear")
 """Whose averages a record has, in order of power."""
 NOWHERE = -1
 """Gear or kind of a record without damage, or with damage in several gears."""
+SAID = 0.99
+"""Share of unseen sound records of which damage is not said."""
 BATCH = 256
 """Channels of records that are asked at a time."""
 WEIGHTS = {"damage": 1.0, "kind": 0.3, "gear": 0.3, "size": 0.3}

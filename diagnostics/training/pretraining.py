@@ -40,6 +40,7 @@ from diagnostics.training.gearbox_network import (
     LEVELS,
     NOWHERE,
     QUANTILES,
+    SAID,
     WIDTHS,
     DamageTruth,
     GearboxNetwork,
@@ -65,8 +66,8 @@ LABELS = (
 )  # fmt: skip
 SOUND = "none"
 """Value of `faulty_gear`. All teeth are sound beside a spalled bearing, bad alignment or a loose sensor too."""
-SAID, LIKE = 0.99, 0.98
-"""Shares of unseen sound records of which damage is not said, and of unseen records that each distance calls alike."""
+LIKE = 0.98
+"""Share of unseen records that each distance calls alike."""
 TEETH = tuple(f"teeth_{gear}" for gear in GEARS)
 FEWEST_PAIRS, SHARES = 20, {TEST: 0.15, VALIDATION: 0.1}
 """Pairs of teeth from which on these decide the split, and the shares that are not learnt from."""

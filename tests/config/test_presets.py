@@ -90,6 +90,8 @@ def test_an_installed_wheel_plans_a_preset_by_name_and_writes_pages(tmp_path: Pa
     assert "<p>Turns.</p>" in said
     assert "--paper" in said  # its style and scripts are in the wheel, too
     assert "aria-sort" in said
+    network = "from diagnostics.training.shipped_network import shipped_network; print(shipped_network()[0].kinds)"
+    assert "spalling" in run(network)  # the weights are in the wheel
     # What a newcomer writes has types with the wheel alone: py.typed is in it, and public names are resolved.
     (packages,) = (tmp_path / "venv" / "lib").glob("python3*/site-packages")
     (packages / "libraries.pth").write_text(libraries)
