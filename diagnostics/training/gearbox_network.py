@@ -102,7 +102,8 @@ class Limits(nn.Module):  # type: ignore[misc]
     farthest : (2, 3) float64
         Distances that are like training.
     sound, damaged : (2, 401) float64
-        Log odds of damage of unseen records without and with damage, quantiles from 0 to 1.
+        Log odds of damage of unseen records, quantiles from 0 to 1: of the sound state that looks worst, and of all
+        damaged ones.
     """
 
     def __init__(self) -> None:

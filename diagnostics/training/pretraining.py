@@ -390,7 +390,8 @@ def _finished(
         scores = _scores(network, kept, sides, truths)
     plan, split, owner = json.loads((home / PLAN).read_text()), kept.labels["split"], kept.labels["specimen_id"]
     covered = _covered(kept, chosen)
-    save_gearbox_network(network, home / WEIGHTS, covered)
+    false = {side: found["called_damaged_of_sound"] for side, found in scores.items()}
+    save_gearbox_network(network, home / WEIGHTS, covered | {"called_damaged_of_sound": false})
     card: dict[str, Any] = plain(
         {
             "weights_sha256": hashlib.sha256((home / WEIGHTS).read_bytes()).hexdigest(),
@@ -420,7 +421,7 @@ def _unseen(kept: KeptRecords) -> str:
 
 def _covered(kept: KeptRecords, chosen: PretrainingSettings) -> dict[str, Any]:
     """Return what a recording may be: rate [Hz], length [s], ranges of teeth, ratio and speed [Hz] of the training."""
-    designs, teeth = [siggen.load_config(name) for name in chosen.families], kept.averages.teeth
+    designs, teeth = [siggen.load_config(name) for name in chosen.families], kept.averages.teeth[kept.of_split(TRAIN)]
     speeds = [point.speed_hz for design in designs for point in design.config.operating_points]
     ends = [(one, one) if isinstance(one, float) else one.bounds() for one in speeds]
     ratio = teeth[:, 1] / teeth[:, 0]
@@ -472,9 +473,12 @@ def _set_limits(network: GearboxNetwork, kept: KeptRecords, sides: Sides, truths
         if own.size:
             limits.farthest[side] = torch.tensor(np.quantile(limits.distances(averages[own], seen[own], side), LIKE, 0))
             odds, ill = tell(network, rows[own]).damage.double().numpy(), truths.damaged[own] > 0.0
-            for held, records in ((limits.sound, ~ill), (limits.damaged, ill)):
-                if records.any():
-                    held[side] = torch.tensor(np.quantile(odds[records], levels))
+            state = kept.labels["state"][own]
+            sound = [np.quantile(odds[state == name], levels) for name in dict.fromkeys(state[~ill].tolist())]
+            if sound:  # of that which looks worst: a loose sensor, which looks sounder, must not lower the limit
+                limits.sound[side] = torch.tensor(np.max(sound, axis=0))
+            if ill.any():
+                limits.damaged[side] = torch.tensor(np.quantile(odds[ill], levels))
 
 
 def _scores(network: GearboxNetwork, kept: KeptRecords, sides: Sides, truths: DamageTruth) -> dict[str, Any]:

@@ -134,6 +134,33 @@ def test_signals_of_no_gearbox_are_unlike_the_training(
     assert any("unlike the training" in reason or "mesh lines" in reason for reason in answer["reasons"])
 
 
+@pytest.mark.parametrize("what", ["tacho late by two samples", "sign", "gain", "another gearbox"])
+def test_a_reference_that_does_not_lie_over_the_recording_is_no_reference(
+    what: str, gearboxes: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    healthy, again = (list(records_of(gearboxes, state)) for state in ("healthy", "healthy_again"))
+    changed: dict[str, Any] = {
+        "tacho late by two samples": {"tacho_s": np.asarray(again[0]["tacho_s"]) + 2.0 / FS_HZ},
+        "sign": {COLUMNS[0]: -again[0][COLUMNS[0]]},
+        "gain": {COLUMNS[0]: 1.5 * again[0][COLUMNS[0]]},
+        "another gearbox": {name: again[1][name] for name in COLUMNS[:2]},
+    }
+    file, reference = saved(tmp_path / "run.npz", again[0], **changed[what]), saved(tmp_path / "old.npz", healthy[0])
+    assert run(monkeypatch, tmp_path, file, "--reference", reference, "--json") == 0
+    (answer,) = told(capsys)
+    assert answer["answer"] == "cannot tell"
+    assert any("old.npz" in reason for reason in answer["reasons"])
+
+
+def test_a_missing_pulse_is_said(
+    gearboxes: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    record = next(records_of(gearboxes, "healthy"))
+    file = saved(tmp_path / "run.npz", record, tacho_s=np.delete(np.asarray(record["tacho_s"]), 20))
+    assert run(monkeypatch, tmp_path, file, "--json") == 0
+    assert any("a pulse is missing at" in reason for reason in told(capsys)[0]["reasons"])
+
+
 def test_a_recording_is_no_reference_of_itself_and_teeth_have_to_be_said(
     gearboxes: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
