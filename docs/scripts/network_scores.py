@@ -4,8 +4,7 @@ Of a set every gearbox is scored by what has learnt on the others (five folds); 
 what has learnt on the part to learn from, and labels are those of `labels_of`. Prints Markdown: AUC of damage of the
 network without training, of a regression on what it says, of logistic regression and gradient boosting on all
 indicators, and differences of the second from both, paired on the same gearboxes; limits of 95 % over gearboxes. Of a
-set also by state. `--learn 24` lets folds learn from so many gearboxes only. Another network: `--network
-runs/pretrained/network.safetensors`.
+set also by state. Another network: `--network runs/pretrained/network.safetensors`.
 """
 
 from __future__ import annotations
@@ -61,7 +60,7 @@ def learnt(
     return said[asked, 0], *found
 
 
-def of_set(path: Path, few: int | None, seed: int, network: object) -> Iterator[Judged]:
+def of_set(path: Path, seed: int, network: object) -> Iterator[Judged]:
     """Yield what is judged of a set, alone and beside."""
     dataset = siggen.open(path)
     table, lines = diagnostics.table(dataset), gear_averages(dataset, 2)
@@ -79,11 +78,7 @@ def of_set(path: Path, few: int | None, seed: int, network: object) -> Iterator[
         fold, scores = Design(folds=5, owner=2000).dealt(owner, seed)[0], np.zeros((4, ill.size))
         for held in np.unique(fold):
             asked = fold == held
-            others = np.unique(owner[~asked])
-            chosen = asked if few is None else asked | ~np.isin(owner, others[:few])
-            part = asked | ~chosen
-            rows = learnt(values[part], said[part], ill[part], owner[part], asked[part], beside=beside)
-            scores[:, asked] = rows
+            scores[:, asked] = learnt(values, said, ill, owner, asked, beside=beside)
         state = table.labels["state"][seen]
         yield Judged(path.name, side, ill, owner, tuple(scores))
         for name in dict.fromkeys(state[ill].tolist()):
@@ -142,7 +137,6 @@ def main() -> None:
     """Print the table."""
     asked = argparse.ArgumentParser(description=__doc__)
     asked.add_argument("path", type=Path)
-    asked.add_argument("--learn", type=int)
     asked.add_argument("--network", type=Path)
     asked.add_argument("--seed", type=int, default=0)
     given = asked.parse_args()
@@ -152,7 +146,7 @@ def main() -> None:
     )
     print("|---" * 9 + "|")
     if not is_benchmark(given.path):
-        for judged in of_set(given.path, given.learn, given.seed, network):
+        for judged in of_set(given.path, given.seed, network):
             found = areas(judged, given.seed)
             print(row(judged.part, judged.side, np.unique(judged.gearbox).size, found), flush=True)
         return
