@@ -12,7 +12,7 @@ EXTRA_OF = {
     "skops": "diagnostics",
     "jinja2": "diagnostics",
     "torch": "cnn",
-    "safetensors": "cnn",
+    "safetensors": "diagnostics",
     "nptdms": "recordings",
     "pyuff": "recordings",
     "h5py": "recordings",

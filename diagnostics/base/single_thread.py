@@ -31,3 +31,12 @@ def single_thread() -> Iterator[None]:
             yield
     finally:
         _LIMITED.reset(outer)
+
+
+@contextmanager
+def single_blas_thread() -> Iterator[None]:
+    """Give numpy one thread, in a block: for many small products, where scikit-learn is not needed otherwise."""
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(1, user_api="blas"):
+        yield

@@ -194,8 +194,6 @@ def benchmark_records(benchmark: Benchmark, workers: int) -> BenchRecords:
 
 
 def _gear_averages(benchmark: Benchmark, workers: int) -> GearLines | None:
-    if missing_packages("torch", "safetensors"):
-        return None
     from diagnostics.training.shipped_network import gear_averages, knows
 
     sets = [benchmark.learn(), *map(benchmark.part, benchmark.parts)]

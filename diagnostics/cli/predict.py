@@ -174,7 +174,7 @@ def _by_network(
     from diagnostics.base.extras import require_packages
     from diagnostics.base.progress import terminal_stage
 
-    require_packages("the network", "torch")
+    require_packages("the network", "safetensors")
     with terminal_stage("reading the network", 1):
         from diagnostics.prediction.gearbox_answer import gearbox_answer
         from diagnostics.prediction.prediction_page import MEANING_OF_NETWORK, write_answer

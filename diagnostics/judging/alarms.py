@@ -21,7 +21,6 @@ from typing import Any
 
 import numpy as np
 
-from diagnostics.base.extras import missing_packages
 from diagnostics.base.single_thread import single_thread
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.judging.evaluation import Design, Entry, chosen_scores, inner_scores, pooled_scores
@@ -370,8 +369,6 @@ def judged_detectors(matrix: FeatureMatrix, seed: int, dataset: Dataset | None =
 
 def _network_says(matrix: FeatureMatrix, dataset: Dataset) -> tuple[np.ndarray, np.ndarray] | None:
     """Return what the network of many gearboxes says of all records, alone and beside healthy ones."""
-    if missing_packages("torch", "safetensors"):
-        return None
     from diagnostics.training.shipped_network import gear_averages, heads, knows
 
     if not knows(dataset):

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import torch
+from scipy.special import softmax
 
 from diagnostics.page.wording import percent
 from diagnostics.prediction.record_pieces import at_rate, cut
@@ -22,7 +22,7 @@ from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.recordings.shaft_pulses import ShaftPulses, shaft_pulses
 from diagnostics.records.gear_train import pair_train
 from diagnostics.training.gear_rows import GearLines, gear_lines, gear_rows, joined
-from diagnostics.training.gearbox_network import GEARS, SAID, GearboxNetwork, seen_numbers, tell
+from diagnostics.training.gearbox_network import GEARS, SAID, GearboxNetwork
 from diagnostics.training.likeness import average_numbers, mesh_over_noise
 from diagnostics.training.shipped_network import shipped_network
 from siggen.columns.drivetrain import GearTrain
@@ -223,7 +223,7 @@ def gearbox_answer(
     asked = _Asked(network, side, lines, joined([found[2] for found in healthy]) if healthy else None)
     odds, distances = asked.odds(), asked.distances()
     limits = network.limits
-    farthest = limits.farthest[side].numpy()
+    farthest = limits.farthest[side]
     for name, off, most in zip(DISTANCES, distances, farthest, strict=True):
         if not off <= most:
             reasons.append(f"unlike the training: {name} {off:.2f} spreads off, at most {most:.2f} there")
@@ -236,15 +236,15 @@ def gearbox_answer(
                 "give recordings at one load"
             )
     told = asked.told
-    low, middle, high = np.exp(told.size.double().mean(dim=0).numpy()).tolist()
+    low, middle, high = np.exp(told.size.astype(np.float64).mean(axis=0)).tolist()
     return GearboxAnswer(
         recording=slow,
         pulses=pulses,
         train=train,
         side=side,
         odds=odds,
-        as_odd=float((limits.sound[side].numpy() >= odds).mean()),
-        unseen=float((limits.damaged[side].numpy() <= odds).mean()),
+        as_odd=float((limits.sound[side] >= odds).mean()),
+        unseen=float((limits.damaged[side] <= odds).mean()),
         distances=tuple(distances.tolist()),
         farthest=tuple(farthest.tolist()),
         kinds=_probabilities(told.kind, network.kinds),
@@ -258,8 +258,8 @@ def gearbox_answer(
     )
 
 
-def _probabilities(logits: torch.Tensor, names: Sequence[str]) -> dict[str, float]:
-    return dict(zip(names, logits.mean(dim=0).softmax(dim=0).double().tolist(), strict=True))
+def _probabilities(logits: np.ndarray, names: Sequence[str]) -> dict[str, float]:
+    return dict(zip(names, softmax(logits.astype(np.float64).mean(axis=0)).tolist(), strict=True))
 
 
 class _Asked:
@@ -268,15 +268,15 @@ class _Asked:
     def __init__(self, network: GearboxNetwork, side: int, lines: GearLines, healthy: GearLines | None) -> None:
         self.network, self.side, self.lines = network, side, lines
         self.rows = gear_rows(lines, healthy)
-        self.told = tell(network, self.rows)
+        self.told = network.tell(self.rows)
 
     def odds(self) -> float:
         """Return the mean log odds of the pieces."""
-        return float(self.told.damage.double().mean())
+        return float(self.told.damage.astype(np.float64).mean())
 
     def distances(self) -> np.ndarray:
         """Return the median of all distances over pieces, (3,)."""
-        seen = seen_numbers(self.network, self.rows)
+        seen = self.network.seen(self.rows)
         return np.asarray(
             np.median(self.network.limits.distances(average_numbers(self.lines), seen, self.side), axis=0)
         )

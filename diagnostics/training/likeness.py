@@ -12,7 +12,6 @@ Source: Mahalanobis distance with a shrunk covariance (Ledoit and Wolf 2004); wh
 from __future__ import annotations
 
 import numpy as np
-import torch
 
 from diagnostics.signal.innovations import SHAFT_ORDERS
 from diagnostics.training.gear_rows import GearLines
@@ -69,25 +68,25 @@ def _log(part: np.ndarray, whole: float) -> np.ndarray:
     return np.asarray(np.log(np.clip(part / max(float(whole), 1e-300), SMALLEST, 1.0 / SMALLEST)))
 
 
-def fitted(values: np.ndarray) -> tuple[torch.Tensor, torch.Tensor]:
+def fitted(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return centre (numbers,) and precision (numbers, numbers) of values (n, numbers)."""
     from sklearn.covariance import LedoitWolf
 
     spread = values.std(axis=0) + 1e-9
     covariance = LedoitWolf().fit((values - values.mean(axis=0)) / spread)
     precision = covariance.precision_ / np.outer(spread, spread)
-    return torch.tensor(values.mean(axis=0)), torch.tensor(precision)
+    return values.mean(axis=0), precision
 
 
-def distances(values: np.ndarray, centre: torch.Tensor, precision: torch.Tensor) -> np.ndarray:
+def distances(values: np.ndarray, centre: np.ndarray, precision: np.ndarray) -> np.ndarray:
     """Return how far values (..., numbers) are from the centre, (...), in standard deviations of a number."""
-    off = values - centre.numpy()
-    return np.asarray(np.sqrt(np.einsum("...i,ij,...j->...", off, precision.numpy(), off) / off.shape[-1]))
+    off = values - centre
+    return np.asarray(np.sqrt(np.einsum("...i,ij,...j->...", off, precision, off) / off.shape[-1]))
 
 
-def farthest(values: np.ndarray, centre: torch.Tensor, spread: torch.Tensor) -> np.ndarray:
+def farthest(values: np.ndarray, centre: np.ndarray, spread: np.ndarray) -> np.ndarray:
     """Return how far the number that lies farthest is from the centre, (...), in its standard deviations."""
-    return np.asarray(np.abs((values - centre.numpy()) / spread.numpy()).max(axis=-1))
+    return np.asarray(np.abs((values - centre) / spread).max(axis=-1))
 
 
 def mesh_over_noise(records: GearLines) -> np.ndarray:

@@ -35,20 +35,16 @@ from diagnostics.base.seeding import Purpose, generator
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.statistics.evaluation import area, bootstrap_weights
 from diagnostics.training.gear_rows import ACCELERATION, ALONE, PARTS, GearLines, gear_lines, gear_rows, joined
+from diagnostics.training.gearbox_learner import NOWHERE, DamageTruth, GearboxLearner, learnt, told_loss
 from diagnostics.training.gearbox_network import (
     GEARS,
     LEVELS,
-    NOWHERE,
     QUANTILES,
     SAID,
     WIDTHS,
-    DamageTruth,
     GearboxNetwork,
     Told,
     save_gearbox_network,
-    seen_numbers,
-    tell,
-    told_loss,
 )
 from diagnostics.training.likeness import average_numbers, fitted
 from diagnostics.training.loop import LoopSettings, fit_network, seeded
@@ -345,9 +341,8 @@ def _trained(
     share, sizes = float(truths.damaged[learn].mean()), truths.size[learn][np.isfinite(truths.size[learn])]
     channels = rows.shape[1]
     with seeded(chosen.seed):
-        network = GearboxNetwork(faults, chosen.widths)
-        if sizes.size:
-            network.size_centre.copy_(torch.tensor([sizes.mean(), max(float(sizes.std()), 1e-3)]))
+        centre = (float(sizes.mean()), max(float(sizes.std()), 1e-3)) if sizes.size else (0.0, 1.0)
+        learner = GearboxLearner(faults, chosen.widths, centre)
 
         def batches(number: int) -> Iterator[torch.Tensor]:
             rng, losses = generator(chosen.seed, Purpose.PRETRAINING, number), []
@@ -356,14 +351,14 @@ def _trained(
                 check()
                 place, channel = np.divmod(order[start : start + chosen.batch], channels)
                 seen = _moved(rows[learn[place], channel], rng, chosen.alone)
-                loss = told_loss(network(seen), truths.chosen(learn[place]), share)
+                loss = told_loss(learner(seen), truths.chosen(learn[place]), share)
                 losses.append(float(loss.detach()))
                 yield loss
             say(f"pass {number} of {chosen.passes}: loss {np.mean(losses):.4f}")
 
         loop = LoopSettings(chosen.passes, chosen.rate, chosen.decay, falling=True)
-        fit_network(network, batches, None, loop, place=home / PLACE)
-    return network, rows, truths
+        fit_network(learner, batches, None, loop, place=home / PLACE)
+    return learnt(learner), rows, truths
 
 
 def _moved(rows: np.ndarray, rng: np.random.Generator, alone: float) -> torch.Tensor:
@@ -384,10 +379,9 @@ def _finished(
 ) -> dict[str, Any]:
     """Write weights and card; return the card."""
     sides = _sides(kept, rows)
-    with seeded(0):
-        _widen(network, sides, truths, kept.of_split(VALIDATION))
-        _set_limits(network, kept, sides, truths)
-        scores = _scores(network, kept, sides, truths)
+    _widen(network, sides, truths, kept.of_split(VALIDATION))
+    _set_limits(network, kept, sides, truths)
+    scores = _scores(network, kept, sides, truths)
     plan, split, owner = json.loads((home / PLAN).read_text()), kept.labels["split"], kept.labels["specimen_id"]
     covered = _covered(kept, chosen)
     false = {side: found["called_damaged_of_sound"] for side, found in scores.items()}
@@ -395,7 +389,7 @@ def _finished(
     card: dict[str, Any] = plain(
         {
             "weights_sha256": hashlib.sha256((home / WEIGHTS).read_bytes()).hexdigest(),
-            "parameters": sum(weight.numel() for weight in network.parameters()),
+            "parameters": sum(weight.size for name, weight in network.weights.items() if name != "size_centre"),
             "torch": torch.__version__,
             **plan,
             "gearboxes_of_splits": {
@@ -450,7 +444,7 @@ def _widen(network: GearboxNetwork, sides: Sides, truths: DamageTruth, places: n
     for side, (_, rows, seen) in enumerate(sides):
         own = places[np.isfinite(truths.size[places]) & seen[places]]
         if own.size:
-            known, (low, _, high) = truths.size[own], tell(network, rows[own]).size.numpy().T
+            known, (low, _, high) = truths.size[own], network.tell(rows[own]).size.T
             missed = np.sort(np.maximum(low - known, known - high))
             rank = int(np.ceil((missed.size + 1) * (QUANTILES[-1] - QUANTILES[0]))) - 1
             network.size_widening[side] = float(missed[min(rank, missed.size - 1)])
@@ -463,22 +457,22 @@ def _set_limits(network: GearboxNetwork, kept: KeptRecords, sides: Sides, truths
     averages = average_numbers(kept.averages)
     known = np.concatenate(list(averages[learnt]))
     limits.average_centre, limits.average_precision = fitted(known)
-    limits.average_spread = torch.tensor(known.std(axis=0) + 1e-9)
+    limits.average_spread = known.std(axis=0) + 1e-9
     for side, (_, rows, beside) in enumerate(sides):
-        seen = seen_numbers(network, rows)
+        seen = network.seen(rows)
         limits.seen_centre[side], limits.seen_precision[side] = fitted(
             np.concatenate(list(seen[learnt[beside[learnt]]]))
         )
         own = unseen[beside[unseen]] if beside[unseen].any() else unseen
         if own.size:
-            limits.farthest[side] = torch.tensor(np.quantile(limits.distances(averages[own], seen[own], side), LIKE, 0))
-            odds, ill = tell(network, rows[own]).damage.double().numpy(), truths.damaged[own] > 0.0
+            limits.farthest[side] = np.quantile(limits.distances(averages[own], seen[own], side), LIKE, 0)
+            odds, ill = network.tell(rows[own]).damage.astype(np.float64), truths.damaged[own] > 0.0
             state = kept.labels["state"][own]
             sound = [np.quantile(odds[state == name], levels) for name in dict.fromkeys(state[~ill].tolist())]
             if sound:  # of that which looks worst: a loose sensor, which looks sounder, must not lower the limit
-                limits.sound[side] = torch.tensor(np.max(sound, axis=0))
+                limits.sound[side] = np.max(sound, axis=0)
             if ill.any():
-                limits.damaged[side] = torch.tensor(np.quantile(odds[ill], levels))
+                limits.damaged[side] = np.quantile(odds[ill], levels)
 
 
 def _scores(network: GearboxNetwork, kept: KeptRecords, sides: Sides, truths: DamageTruth) -> dict[str, Any]:
@@ -488,12 +482,12 @@ def _scores(network: GearboxNetwork, kept: KeptRecords, sides: Sides, truths: Da
         places = kept.of_split(TEST)
         places = places[seen[places]]
         if places.size:
-            told = tell(network, rows[places])
+            told = network.tell(rows[places])
             labels = {key: value[places] for key, value in kept.labels.items()}
             drawn = "specimen_id" if _unseen(kept) == "gearboxes" else "pair"
-            off = network.limits.distances(averages[places], seen_numbers(network, rows[places]), side)
-            like = (off <= network.limits.farthest[side].numpy()).all(axis=1)
-            said = told.damage.double().numpy() > network.limits.said(side, SAID)
+            off = network.limits.distances(averages[places], network.seen(rows[places]), side)
+            like = (off <= network.limits.farthest[side]).all(axis=1)
+            said = told.damage.astype(np.float64) > network.limits.said(side, SAID)
             ill = truths.damaged[places] > 0.0
             found[name] = _scores_of(told, truths.chosen(places), labels, drawn) | {
                 "answered": float(like.mean()),
@@ -505,7 +499,7 @@ def _scores(network: GearboxNetwork, kept: KeptRecords, sides: Sides, truths: Da
 
 def _scores_of(told: Told, truths: DamageTruth, labels: Mapping[str, np.ndarray], drawn: str) -> dict[str, Any]:
     """Return scores with limits; `drawn` names what is resampled, since that is what others would draw anew."""
-    damage, specimen = told.damage.double().numpy(), labels["specimen_id"]
+    damage, specimen = told.damage.astype(np.float64), labels["specimen_id"]
     weights = bootstrap_weights(labels[drawn], 0)
     ill, healthy, found = truths.damaged > 0.0, labels["fault"] == HEALTHY, dict[str, Any]()
     for name in ("damage", *dict.fromkeys(labels["state"][~healthy].tolist())):
@@ -515,10 +509,10 @@ def _scores_of(told: Told, truths: DamageTruth, labels: Mapping[str, np.ndarray]
     for name, said, place in (("kind", told.kind, truths.kind), ("gear", told.gear, truths.gear)):
         known = place != NOWHERE
         if known.any():
-            found[f"{name}_named_rightly"] = float((said.numpy().argmax(axis=1)[known] == place[known]).mean())
+            found[f"{name}_named_rightly"] = float((said.argmax(axis=1)[known] == place[known]).mean())
     sized = np.isfinite(truths.size)
     if sized.any():
-        low, middle, high = told.size.numpy()[sized].T
+        low, middle, high = told.size[sized].T
         own = truths.size[sized]
         found["size_in_interval"] = float(((low <= own) & (own <= high)).mean())
         found["size_interval_factor"] = float(np.exp(np.median(high - low)))

@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import torch
 
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.workers import mapped
@@ -23,7 +22,7 @@ from diagnostics.records.record_classes import STATE, check_dataset, set_classes
 from diagnostics.records.recording import Recording, label_names, recordings
 from diagnostics.records.state_classes import CLASS
 from diagnostics.training.gear_rows import ACCELERATION, GearLines, gear_lines, gear_rows, joined
-from diagnostics.training.gearbox_network import GEARS, GearboxNetwork, load_gearbox_network, tell
+from diagnostics.training.gearbox_network import GEARS, GearboxNetwork, load_gearbox_network
 from diagnostics.training.referenced import healthy_references
 from siggen.dataset.reading import Dataset
 from siggen.errors import UsageError
@@ -74,9 +73,9 @@ def heads(
     for start in range(0, len(records.lines), CHUNK):
         own = slice(start, start + CHUNK)
         rows = gear_rows(records.chosen(own), healthy, None if references is None else references[own])
-        told = tell(asked, rows)
+        told = asked.tell(rows)
         parts = told.damage[:, None], told.kind, told.gear[:, :1] - told.gear[:, 1:2], told.size[:, 1:2]
-        found.append(torch.cat(parts, dim=1).double().numpy())
+        found.append(np.concatenate(parts, axis=1).astype(np.float64))
     return np.concatenate(found)
 
 

@@ -7,20 +7,24 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import torch
+import numpy as np
 from safetensors import SafetensorError, safe_open
-from safetensors.torch import load_file, save
-from torch import nn
+from safetensors.numpy import load_file, save
 
 from siggen.errors import UsageError
 from siggen.file_writing import write_file
 
 
-def save_weights(network: nn.Module, path: Path, form: str, facts: Mapping[str, Any]) -> None:
-    """Write weights and facts: JSON with the `format`, under the one metadata key `facts`."""
-    weights = {name: value.contiguous() for name, value in network.state_dict().items()}
+def save_arrays(arrays: Mapping[str, np.ndarray], path: Path, form: str, facts: Mapping[str, Any]) -> None:
+    """Write arrays and facts: JSON with the `format`, under the one metadata key `facts`."""
+    whole = {name: np.ascontiguousarray(array) for name, array in arrays.items()}
     # one key: safetensors writes several in an order of its own, another one at every call
-    write_file(path, save(weights, metadata={"facts": json.dumps({"format": form, **facts})}))
+    write_file(path, save(whole, metadata={"facts": json.dumps({"format": form, **facts})}))
+
+
+def save_weights(network: Any, path: Path, form: str, facts: Mapping[str, Any]) -> None:
+    """Write the weights of a network of PyTorch as `save_arrays` does."""
+    save_arrays({name: value.numpy() for name, value in network.state_dict().items()}, path, form, facts)
 
 
 def read_facts(path: Path, form: str) -> Any:
@@ -32,7 +36,7 @@ def read_facts(path: Path, form: str) -> Any:
         If the file is none of this format.
     """
     try:
-        with safe_open(path, framework="pt") as file:
+        with safe_open(path, framework="np") as file:
             metadata = file.metadata() or {}
     except (OSError, SafetensorError) as error:
         raise UsageError(f"{path}: cannot be read as safetensors ({error})") from error
@@ -46,21 +50,39 @@ def read_facts(path: Path, form: str) -> Any:
     return facts
 
 
-def load_weights(network: nn.Module, path: Path) -> None:
-    """Give a network the weights of a file, and leave it in evaluation mode.
+def load_arrays(path: Path) -> dict[str, np.ndarray]:
+    """Return the arrays of a file.
+
+    Raises
+    ------
+    UsageError
+        If it cannot be read, or one is not finite.
+    """
+    try:
+        arrays: dict[str, np.ndarray] = load_file(path)
+    except SafetensorError as error:
+        raise other_schema(path, error) from error
+    infinite = [name for name, array in arrays.items() if not bool(np.isfinite(array).all())]
+    if infinite:
+        raise UsageError(f"{path}: received {infinite[0]} that is not finite; the file is damaged: train again")
+    return arrays
+
+
+def load_weights(network: Any, path: Path) -> None:
+    """Give a network of PyTorch the weights of a file, and leave it in evaluation mode.
 
     Raises
     ------
     UsageError
         If they are of another network, or not finite.
     """
+    import torch
+
+    arrays = load_arrays(path)
     try:
-        network.load_state_dict(load_file(path))
-    except (RuntimeError, SafetensorError) as error:
+        network.load_state_dict({name: torch.from_numpy(array) for name, array in arrays.items()})
+    except RuntimeError as error:
         raise other_schema(path, error) from error
-    infinite = [name for name, value in network.state_dict().items() if not bool(torch.isfinite(value).all())]
-    if infinite:
-        raise UsageError(f"{path}: received {infinite[0]} that is not finite; the file is damaged: train again")
     network.eval()
 
 

@@ -13,6 +13,7 @@ WORKERS_ARE_THE_SUBJECT = {"tests/cli/test_generate.py", "tests/sets/test_run_lo
 FRESH_COMMANDS = {
     "tests/cli/test_app.py", "tests/config/test_presets.py",
     "tests/diagnostics/cli/test_two_stages.py", "tests/diagnostics/cli/test_planetary_reports.py",
+    "tests/diagnostics/prediction/test_gearbox_answer.py",
 }  # fmt: skip
 """Beside walks and pages: fresh processes are their subject, or their tests are slow ones."""
 WHO_SIMULATES = {"--executor", "--workers", "executor", "workers"}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -78,6 +79,17 @@ def test_a_large_spall_is_told_beside_a_healthy_recording_and_nothing_of_a_healt
         assert loud["answer"] == "damage"
         assert max(loud["kinds"], key=loud["kinds"].__getitem__) == "spalling"
         assert loud["gears"]["pinion"] > 0.9
+
+
+def test_the_network_answers_where_pytorch_is_not_installed(gearboxes: Any, tmp_path: Path) -> None:
+    file = saved(tmp_path / "run.npz", next(records_of(gearboxes, "spalled")))
+    command = ["siggen-diagnostics", "predict", file, "--teeth", "18,47", "--fs", "25600", *rig_file(tmp_path)]
+    code = (
+        f"import sys; sys.modules['torch'] = None; sys.argv = {command!r}; from diagnostics.cli.app import main; main()"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "answer:" in done.stdout
 
 
 def test_the_page_says_what_the_terminal_says(
