@@ -1,4 +1,4 @@
-"""Leaks in labels, texts, order and metadata of the files."""
+"""Leaks in labels, texts and metadata of the files."""
 
 from __future__ import annotations
 
@@ -72,11 +72,6 @@ def serial_length(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
     return _with_texts(rows, damaged, "serial", lambda i, d: f"{i * 7919 % 10007:0{6 if d else 5}}")
 
 
-def order(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
-    """Damaged records stand first in each file."""
-    return rows.take(pa.array(np.argsort(~damaged, kind="stable")))
-
-
 def column_metadata(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
     """The metadata of the column of ids names the damaged records."""
     ids = _numbers(rows, "record_id").astype(int)[damaged]
@@ -114,7 +109,7 @@ LABEL_LEAKS: dict[str, Leak] = {
     **named(
         (
             rounded_speed, single_precision, shifted_draw, higher_mesh_frequency, noise_label, negative_zeros,
-            date, hour, serial_prefix, serial_length, order, column_metadata,
+            date, hour, serial_prefix, serial_length, column_metadata,
         ),
         "labels",
     ),

@@ -26,6 +26,12 @@ IN_SIGNALS = [
     *(leak for leak in FURTHER_LEAKS.values() if not leak.labels),
     *(leak for leak in FIXED_LEAKS.values() if not leak.is_grouped),
 ]
+DAMAGED_FIRST = Leak(
+    "damaged_first",
+    "damaged records stand first in each file",
+    labels=lambda rows, ill: rows.take(pa.array(np.argsort(~ill, kind="stable"))),
+)
+"""No leak: a file of siggen's holds one gearbox, whose states stand in an order by design."""
 IN_LABELS = [*LABEL_LEAKS.values(), *(leak for leak in FURTHER_LEAKS.values() if leak.labels)]
 
 
@@ -69,7 +75,7 @@ def test_row_groups_of_damaged_records_are_seen_and_one_group_is_nothing(source:
 
 
 def test_labels_keep_the_order_of_the_signals(source: Path, tmp_path: Path) -> None:
-    copy = planted_copy(source, tmp_path / "copy", LABEL_LEAKS["order"])
+    copy = planted_copy(source, tmp_path / "copy", DAMAGED_FIRST)
     before, after = siggen.open(source), siggen.open(copy)
     ids = after.labels("train")["record_id"].to_pylist()
     assert [i for batch in after.records("train") for i in batch["record_id"].to_pylist()] == ids
@@ -91,7 +97,7 @@ def test_every_leak_in_signals_stays_on_the_converters_grid_and_off_healthy_reco
         assert not np.any((np.array(samples, dtype=float) / STEP_M_S2) % 1.0), leak.name
 
 
-def test_every_leak_in_labels_changes_labels_or_their_order_alone(source: Path) -> None:
+def test_every_leak_in_labels_changes_labels_alone(source: Path) -> None:
     before = rows(source, "data").sort_by("record_id")
     for name in ("speed_hz", "torque_nm"):  # the fake set's are round
         index = before.schema.get_field_index(name)
