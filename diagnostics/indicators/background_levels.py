@@ -9,7 +9,7 @@ Level of a channel's noise in ten bands, measured in the half turn of the pinion
 What the averages of both shafts leave is noise and motion that differs from turn to turn, such as the strokes of a
 damaged tooth on one tooth after another of the mating gear. That motion stands near one angle of the pinion. Noise
 stands at all angles. So one half turn, the quietest over all bands together, is left open and the rest is faded out.
-Source: derived. Proof that this hides motion and shows noise: docs/understand/audit.md, "Noise or motion".
+Source: derived. Limits of what this hides and shows: docs/understand/audit.md, "Noise or motion".
 """
 
 from __future__ import annotations
