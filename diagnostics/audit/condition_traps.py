@@ -214,7 +214,7 @@ MENDS = {
     NOISE: "Draw noise and path per gearbox by one law for all states.",
     TEXTS: "Name and date all records by one law, or do not publish the column.",
     CHANNELS: "Record every channel at one gain in all states of a gearbox.",
-    LAGS: "Record all channels and the tacho by one clock in all states.",
+    LAGS: "Record all channels and the tacho by one clock, and with one sign, in all states.",
     EDGES: "Cut all records out of longer ones, without fades.",
     OFFSETS: "Send all states through one amplifier, and take means off all or none.",
     LINES: "Record all states in one place, with the same machines and supplies near.",
