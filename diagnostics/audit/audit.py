@@ -17,11 +17,11 @@ SINGLE = "the best single indicator"
 UNPAIRED = "logistic regression on four indicators"
 PAIRED, CHANGE = "six indicators minus own healthy record", "change of the averaged waveform"
 REFERENCED = " (healthy-referenced)"
-ALONE, WITH_REFERENCE = "strongest attacker alone", "strongest attacker with a healthy reference"
+ALONE, WITH_REFERENCE = "strongest detector alone", "strongest detector with a healthy reference"
 
 
 def is_referenced(name: str) -> bool:
-    """Return whether an attacker sees the healthy record of the same gearbox."""
+    """Return whether a detector sees the healthy record of the same gearbox."""
     return name in (PAIRED, CHANGE) or name.endswith(REFERENCED)
 
 
@@ -50,11 +50,11 @@ class Audit:
     best : dict of str to BestIndicator
         By state, the best single indicator.
     chance : ChanceLimit, optional
-        What the strongest attacker reaches by chance.
+        What the strongest detector reaches by chance.
     reference : ReferenceComparison, optional
         Where the user gave recordings.
     shams : tuple of ShamFound
-        What attackers tell of states in whose damage nothing is removed.
+        What detectors tell of states in whose damage nothing is removed.
     missing : str
         `healthy` or `damaged` where the set has no such records.
     made_again : str
@@ -78,12 +78,12 @@ class Audit:
     missing: str = ""
     made_again: str = ""
 
-    def on_sham(self, attacker: str) -> float:
-        """Return the AUC that an attacker reaches on a sham; NaN where it was not asked.
+    def on_sham(self, detector: str) -> float:
+        """Return the AUC that a detector reaches on a sham; NaN where it was not asked.
 
         Of one that was not, the AUC of the strongest that tells a sham more often than chance does.
         """
-        own = [found.reached[attacker] for found in self.shams if attacker in found.reached]
+        own = [found.reached[detector] for found in self.shams if detector in found.reached]
         told = [found.auc.value for found in self.shams if found.told]
         return max(own or told, default=math.nan)
 
@@ -105,9 +105,9 @@ class Audit:
         return {name: auc for name, auc in found.items() if math.isfinite(auc)}
 
     def ladder(self, *, referenced: bool) -> list[Detectability]:
-        """Return the entry of the strongest attacker for every state, in the order of sizes, with or without reference.
+        """Return the entry of the strongest detector for every state, in the order of sizes, with or without reference.
 
-        The name of the attacker stands before what it chose.
+        The name of the detector stands before what it chose.
         """
         best: dict[str, Detectability] = {}
         for name, entries in self.detections.items():

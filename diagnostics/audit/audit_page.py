@@ -78,7 +78,7 @@ def verdict_words(audit: Audit, state: str) -> str:
 
 
 def lost_below(audit: Audit, state: str) -> float:
-    """Return the AUC below which a state counts as lost: 0.6, or what the strongest attacker reaches by chance."""
+    """Return the AUC below which a state counts as lost: 0.6, or what the strongest detector reaches by chance."""
     limit = audit.chance.of(state) if audit.chance else math.nan
     return max(CHANCE_AUC, limit) if math.isfinite(limit) else CHANCE_AUC
 
@@ -91,7 +91,7 @@ def shown_ladders(audit: Audit) -> dict[str, list[Detectability]]:
 
 
 def attack_parts(audit: Audit) -> list[Block]:
-    """Return the tables of the attackers; nothing where none could judge."""
+    """Return the tables of the detectors; nothing where none could judge."""
     if not audit.states:
         return []
     return [Paragraph(f"{SAID.how()} {chance_sentence(audit)}".strip()), _strongest_table(audit), _every_table(audit)]
@@ -117,8 +117,8 @@ def _every_table(audit: Audit) -> TableBlock:
         by_state = {entry.state: entry.auc.value for entry in entries}
         number = max((entry.tried for entry in entries), default=0)
         rows.append((capitalised(name), number, *(by_state.get(state) for state in audit.states)))
-    head = ["Attacker", "Columns", *audit.states]
-    caption = "Every attacker on every state: AUC against healthy on gearboxes that were not seen."
+    head = ["Detector", "Columns", *audit.states]
+    caption = "Every detector on every state: AUC against healthy on gearboxes that were not seen."
     return table(head, rows, caption, sortable=True)
 
 
@@ -171,7 +171,7 @@ def _realism_sentence(found: Realism) -> str:
 
 
 def _hardest_sentence(audit: Audit) -> list[str]:
-    """Name the strongest attacker of the hardest and the easiest state, and say what is lost."""
+    """Name the strongest detector of the hardest and the easiest state, and say what is lost."""
     reached = {state: max(audit.probes(state).values()) for state in audit.states if audit.probes(state)}
     if not reached:
         return []

@@ -25,7 +25,7 @@ from diagnostics.audit.bank import (
     sham_traps,
     shams_found,
 )
-from diagnostics.audit.condition_traps import level_attackers
+from diagnostics.audit.condition_traps import level_detectors
 from diagnostics.audit.detectability import (
     TARGETS,
     Detectability,
@@ -38,7 +38,7 @@ from diagnostics.audit.detectability import (
 from diagnostics.audit.envelope import QuantityShare, Realism, realism
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from diagnostics.audit.reference_comparison import reference_comparison, reference_windows, synthetic_windows
-from diagnostics.audit.signal_attackers import NETWORK, PREPARED, signal_attackers
+from diagnostics.audit.signal_detectors import NETWORK, PREPARED, signal_detectors
 from diagnostics.audit.traps import separability_findings, verdict
 from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
@@ -57,7 +57,7 @@ VERIFIED = 10
 """Records to simulate again before an audit: one that changed all damaged ones is missed once in a thousand."""
 
 SEEN_ALONE, BESIDE = "alone", "beside a healthy record"
-"""What attackers see of a record."""
+"""What detectors see of a record."""
 
 
 def audit_numbers(audit: Audit, dataset: Dataset) -> dict[str, Any]:
@@ -229,9 +229,9 @@ def _detections(measured: MeasuredSet, seed: int) -> dict[str, list[Detectabilit
 def _attacks(
     measured: MeasuredSet, seed: int, stage: Stage
 ) -> tuple[dict[str, list[Detectability]], ChanceLimit, tuple[ShamFound, ...]]:
-    """Return what the bank of attackers on waveforms reaches, by chance too, and on shams."""
-    with stage("preparing attackers", PREPARED) as advance:
-        bank = signal_attackers(measured, seed, advance)
+    """Return what the bank of detectors on waveforms reaches, by chance too, and on shams."""
+    with stage("preparing detectors", PREPARED) as advance:
+        bank = signal_detectors(measured, seed, advance)
     with stage("attacking", len(bank)) as advance:
         found = bank_detections(measured, bank, seed, advance)
     with stage("permuted states", len(damaged_states(measured))) as advance:
@@ -240,11 +240,11 @@ def _attacks(
 
 
 def sham_sides(measured: MeasuredSet, bank: list[Entry]) -> dict[str, list[Entry]]:
-    """Return who is asked about shams, by what they see: a bank of attackers on signals, and those on raw levels."""
+    """Return who is asked about shams, by what they see: a bank of detectors on signals, and those on raw levels."""
     return {
         side: [
             *(one for one in bank if is_referenced(one.name) == (side == BESIDE)),
-            *level_attackers(measured, referenced=side == BESIDE),
+            *level_detectors(measured, referenced=side == BESIDE),
         ]
         for side in (SEEN_ALONE, BESIDE)
     }

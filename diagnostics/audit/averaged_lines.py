@@ -1,4 +1,4 @@
-"""Averaged lines of a set as arrays, without shaft and mesh orders, and what attackers take of them.
+"""Averaged lines of a set as arrays, without shaft and mesh orders, and what detectors take of them.
 
 A local event of a few degrees is spread over all orders. Where healthy residuals are weak or Gaussian, it is their only
 outlier, so the band is not known beforehand. Kurtosis of a band: Stewart's FM4 in a band; envelope and dyadic bands:

@@ -1,15 +1,15 @@
-"""What a bank of attackers reaches for every state and on shams, and what the strongest of them reaches by chance.
+"""What a bank of detectors reaches for every state and on shams, and what the strongest of them reaches by chance.
 
-The best of a dozen attackers lies above 0.5 even where there is nothing to find. So the largest AUC over all of them is
+The best of a dozen detectors lies above 0.5 even where there is nothing to find. So the largest AUC over all of them is
 compared with its own law under exchanged states, among alike records, all as one test. The test is exact where records
 of a block are alike but for the state: then the stated states are one of the ways of stating them, each as likely as
-the others. Attackers that are too slow for that are left out of both sides. Source: permutation tests with the maximum
+the others. Detectors that are too slow for that are left out of both sides. Source: permutation tests with the maximum
 statistic, standard literature (Westfall and Young 1993; Phipson and Smyth 2010 for counting the stated states among the
 ways).
 
 A sham is damage that was drawn and passed on with nothing removed, which none should find. It is judged as a damaged
-state is, against the other healthy records: by attackers that see a record alone, and by those that see it beside a
-healthy record. Where it is told from healthy, the pipeline leaks. Damage counts as found where an attacker exceeds what
+state is, against the other healthy records: by detectors that see a record alone, and by those that see it beside a
+healthy record. Where it is told from healthy, the pipeline leaks. Damage counts as found where a detector exceeds what
 it reaches on a sham.
 """
 
@@ -91,13 +91,13 @@ def _exchanged(positive: np.ndarray, groups: np.ndarray, keys: np.ndarray) -> np
 
 
 def bank_maxima(
-    attackers: Sequence[Entry], rows: np.ndarray, states: np.ndarray, specimen: np.ndarray, folds: np.ndarray
+    detectors: Sequence[Entry], rows: np.ndarray, states: np.ndarray, specimen: np.ndarray, folds: np.ndarray
 ) -> np.ndarray:
-    """Return the largest AUC over the attackers for every way of stating the damaged records, (turns,).
+    """Return the largest AUC over the detectors for every way of stating the damaged records, (turns,).
 
     Parameters
     ----------
-    attackers : sequence of Entry
+    detectors : sequence of Entry
         Every one is asked about the rows that it can use.
     rows : (n,) int
         Records of the set.
@@ -113,17 +113,17 @@ def bank_maxima(
         NaN where none could be asked.
     """
     areas = [np.full(len(states), np.nan)]
-    for attacker in attackers:
-        kept = attacker.usable[rows]
+    for detector in detectors:
+        kept = detector.usable[rows]
         if kept.any():
-            areas.append(held_out_values(attacker, rows[kept], states[:, kept], specimen[kept], folds[:, kept]))
+            areas.append(held_out_values(detector, rows[kept], states[:, kept], specimen[kept], folds[:, kept]))
     return np.asarray(np.fmax.reduce(areas))
 
 
 def gearboxes_needed(chance: ChanceLimit | None, specimens: int) -> int | None:
     """Return the least number of gearboxes that may tell; None where those that were judged do.
 
-    So few tell nothing where the strongest attacker reaches by chance what a trap is accused of, 0.9. As many are
+    So few tell nothing where the strongest detector reaches by chance what a trap is accused of, 0.9. As many are
     needed as bring that limit down to the lowest AUC that counts as found, 0.75: its distance from 0.5 falls as one
     over the root of the gearboxes, as does the scatter of an AUC (Birnbaum and Klose 1957). Derived. An AUC ends at 1,
     so the number is the least.
@@ -131,7 +131,7 @@ def gearboxes_needed(chance: ChanceLimit | None, specimens: int) -> int | None:
     Parameters
     ----------
     chance : ChanceLimit, optional
-        What the strongest attacker reaches by chance; undefined where nothing could be judged.
+        What the strongest detector reaches by chance; undefined where nothing could be judged.
     specimens : int
         Gearboxes that were judged.
     """
@@ -144,7 +144,7 @@ def gearboxes_needed(chance: ChanceLimit | None, specimens: int) -> int | None:
 
 @dataclass(frozen=True, slots=True)
 class StateChance:
-    """What the strongest of several attackers reaches on one state by chance.
+    """What the strongest of several detectors reaches on one state by chance.
 
     Attributes
     ----------
@@ -163,15 +163,15 @@ class StateChance:
 
 @dataclass(frozen=True, slots=True)
 class ChanceLimit:
-    """AUC that the strongest of several attackers stays below in 95 % of permuted states.
+    """AUC that the strongest of several detectors stays below in 95 % of permuted states.
 
     Attributes
     ----------
     auc : float
         The least over the states; NaN where nothing could be judged. A state that differs much from healthy records
         has a higher limit: permuted, its records still lie apart from the others.
-    attackers : int
-        How many attackers count as one test.
+    detectors : int
+        How many detectors count as one test.
     permutations : int
         Of every state.
     states : dict of str to StateChance
@@ -179,7 +179,7 @@ class ChanceLimit:
     """
 
     auc: float
-    attackers: int
+    detectors: int
     permutations: int
     states: dict[str, StateChance] = field(default_factory=dict)
 
@@ -194,40 +194,40 @@ def damaged_states(measured: MeasuredSet) -> tuple[str, ...]:
 
 
 def bank_detections(
-    measured: MeasuredSet, attackers: Sequence[Entry], seed: int, advance: Callable[[], None]
+    measured: MeasuredSet, detectors: Sequence[Entry], seed: int, advance: Callable[[], None]
 ) -> dict[str, list[Detectability]]:
-    """Return the detection of every state by every attacker that could be asked, by its name.
+    """Return the detection of every state by every detector that could be asked, by its name.
 
     Parameters
     ----------
     measured : MeasuredSet
         The set.
-    attackers : sequence of Entry
+    detectors : sequence of Entry
     seed : int
         Of folds and resampled gearboxes.
     advance : callable
-        Called after every attacker.
+        Called after every detector.
     """
     found = {}
-    for attacker in attackers:
-        entries = [detection_by(measured, attacker, state, seed) for state in damaged_states(measured)]
+    for detector in detectors:
+        entries = [detection_by(measured, detector, state, seed) for state in damaged_states(measured)]
         if any(math.isfinite(entry.auc.value) for entry in entries):
-            found[attacker.name] = in_order(entries)
+            found[detector.name] = in_order(entries)
         advance()
     return found
 
 
-def detection_by(measured: MeasuredSet, attacker: Entry, state: str, seed: int) -> Detectability:
-    """Return the detection of one state by one attacker; the AUC is NaN with too few gearboxes."""
+def detection_by(measured: MeasuredSet, detector: Entry, state: str, seed: int) -> Detectability:
+    """Return the detection of one state by one detector; the AUC is NaN with too few gearboxes."""
     labels, specimen = measured.labels, measured.labels["specimen_id"]
     of_state = _of_state(measured, state)
-    rows = judged_rows(attacker, measured.healthy, of_state, specimen)
+    rows = judged_rows(detector, measured.healthy, of_state, specimen)
     found = HeldOut(UNDEFINED, "", 0)
     if rows.size:
         folds = DESIGN.dealt(specimen, seed)[:, rows]
-        found = held_out(attacker, rows, of_state[rows], specimen[rows], folds, seed)
+        found = held_out(detector, rows, of_state[rows], specimen[rows], folds, seed)
     sizes, kind = damage_sizes(measured, of_state), damage_kind(labels, of_state)
-    return Detectability(state, kind, sizes, found.auc, found.specimens, found.basis, attacker.tried)
+    return Detectability(state, kind, sizes, found.auc, found.specimens, found.basis, detector.tried)
 
 
 def _of_state(measured: MeasuredSet, state: str) -> np.ndarray:
@@ -235,18 +235,18 @@ def _of_state(measured: MeasuredSet, state: str) -> np.ndarray:
 
 
 def chance_limit(
-    measured: MeasuredSet, attackers: Sequence[Entry], seed: int, advance: Callable[[], None]
+    measured: MeasuredSet, detectors: Sequence[Entry], seed: int, advance: Callable[[], None]
 ) -> ChanceLimit:
-    """Return what the strongest attacker reaches by chance, state by state, each on its own records.
+    """Return what the strongest detector reaches by chance, state by state, each on its own records.
 
     Parameters
     ----------
-    measured, attackers, seed
+    measured, detectors, seed
         As of `bank_detections`.
     advance : callable
         Called after every state.
     """
-    asked = [attacker for attacker in attackers if attacker.many]
+    asked = [detector for detector in detectors if detector.many]
     found = {}
     for state in damaged_states(measured):
         law = state_chance(measured, asked, state, seed)
@@ -258,7 +258,7 @@ def chance_limit(
 
 
 def state_chance(measured: MeasuredSet, asked: Sequence[Entry], state: str, seed: int) -> StateChance | None:
-    """Return what the strongest of some attackers reaches on a state by chance; None where none could be asked."""
+    """Return what the strongest of some detectors reaches on a state by chance; None where none could be asked."""
     maxima, unit = permuted_maxima(measured, asked, state, seed, PERMUTATIONS)
     if not unit:
         return None
@@ -270,12 +270,12 @@ def state_chance(measured: MeasuredSet, asked: Sequence[Entry], state: str, seed
 def permuted_maxima(
     measured: MeasuredSet, asked: Sequence[Entry], state: str, seed: int, turns: int
 ) -> tuple[np.ndarray, str]:
-    """Return the largest AUC over attackers of a state as it is, then permuted, (turns + 1,), and within what.
+    """Return the largest AUC over detectors of a state as it is, then permuted, (turns + 1,), and within what.
 
     That is empty where none could be asked.
     """
     specimen, of_state = measured.labels["specimen_id"], _of_state(measured, state)
-    able = [attacker for attacker in asked if judged_rows(attacker, measured.healthy, of_state, specimen).size]
+    able = [detector for detector in asked if judged_rows(detector, measured.healthy, of_state, specimen).size]
     if not able:
         return np.empty(0), ""
     rows = np.flatnonzero(measured.healthy | of_state)
@@ -306,30 +306,30 @@ TRAP = "sham_told_from_healthy"
 
 @dataclass(frozen=True, slots=True)
 class ShamFound:
-    """The strongest attacker on one sham, and what chance reaches.
+    """The strongest detector on one sham, and what chance reaches.
 
     Attributes
     ----------
-    state, side, attacker : str
-        `side` says what the attackers see.
+    state, side, detector : str
+        `side` says what the detectors see.
     auc : Interval
         Against the other healthy records, on gearboxes that were not learnt from.
     chance : StateChance, optional
-        Of all attackers that can be permuted.
+        Of all detectors that can be permuted.
     reached : dict of str to float
-        AUC of every attacker.
+        AUC of every detector.
     """
 
     state: str
     side: str
-    attacker: str
+    detector: str
     auc: Interval
     chance: StateChance | None
     reached: dict[str, float]
 
     @property
     def told(self) -> bool:
-        """Whether attackers reach more than chance does in 5 % of the cases."""
+        """Whether detectors reach more than chance does in 5 % of the cases."""
         return self.chance is not None and self.chance.p_value <= 0.05
 
     def numbers(self) -> dict[str, Any]:
@@ -337,16 +337,16 @@ class ShamFound:
         return {
             "state": self.state,
             "side": self.side,
-            "attacker": self.attacker,
+            "detector": self.detector,
             "auc": self.auc,
             "chance": self.chance,
             "told": self.told,
-            "auc_by_attacker": self.reached,
+            "auc_by_detector": self.reached,
         }
 
 
 def shams_found(measured: MeasuredSet, sides: Mapping[str, Sequence[Entry]], seed: int) -> tuple[ShamFound, ...]:
-    """Return what attackers reach on every sham of a set, by what they see.
+    """Return what detectors reach on every sham of a set, by what they see.
 
     None for a set without a sham, with too few gearboxes, or without a healthy record that a sham can stand beside.
     """
@@ -361,27 +361,27 @@ def shams_found(measured: MeasuredSet, sides: Mapping[str, Sequence[Entry]], see
     return tuple(one for one in found if one is not None)
 
 
-def _sham_found(asked: MeasuredSet, side: str, attackers: Sequence[Entry], state: str, seed: int) -> ShamFound | None:
-    every = [(detection_by(asked, one, state, seed).auc, one.name) for one in attackers]
+def _sham_found(asked: MeasuredSet, side: str, detectors: Sequence[Entry], state: str, seed: int) -> ShamFound | None:
+    every = [(detection_by(asked, one, state, seed).auc, one.name) for one in detectors]
     defined = [(auc, name) for auc, name in every if math.isfinite(auc.value)]
     if not defined:
         return None
     auc, name = max(defined, key=lambda entry: entry[0].value)
-    chance = state_chance(asked, [one for one in attackers if one.many], state, seed)
+    chance = state_chance(asked, [one for one in detectors if one.many], state, seed)
     return ShamFound(state, side, name, auc, chance, {name: auc.value for auc, name in defined})
 
 
 def sham_traps(found: Sequence[ShamFound]) -> list[Finding]:
-    """Return a finding for every sham that attackers tell better than in any of the permutations.
+    """Return a finding for every sham that detectors tell better than in any of the permutations.
 
     That happens to one of 500 sets without a leak, by each side.
     """
     return [
         Finding(
             TRAP,
-            f"{one.attacker} tells {one.state}, damage without any effect, from healthy records with an AUC of "
+            f"{one.detector} tells {one.state}, damage without any effect, from healthy records with an AUC of "
             f"{one.auc.value:.2f} ({one.auc.low:.2f} to {one.auc.high:.2f})",
-            f"in none of {PERMUTATIONS} permutations the strongest attacker reaches as much",
+            f"in none of {PERMUTATIONS} permutations the strongest detector reaches as much",
             "Find what differs between records of damaged states and healthy ones besides the teeth: what was drawn, "
             "in which order, by which program.",
         )
@@ -395,7 +395,7 @@ def sham_sentences(found: Sequence[ShamFound]) -> list[str]:
     if not found:
         return []
     worst = max(found, key=lambda one: (one.told, one.auc.value))
-    reached = f"an AUC of {decimal(worst.auc.value)} ({limits(worst.auc)}) by {worst.attacker} on {worst.state}"
+    reached = f"an AUC of {decimal(worst.auc.value)} ({limits(worst.auc)}) by {worst.detector} on {worst.state}"
     chance = worst.chance.auc if worst.chance else math.nan
     by_chance = f"; chance reaches {decimal(chance)} in 5 % of the cases" if math.isfinite(chance) else ""
     if worst.told:

@@ -1,6 +1,6 @@
-"""Trap: an attacker that does not look at the gears tells a state from healthy on gearboxes that it was not shown.
+"""Trap: a detector that does not look at the gears tells a state from healthy on gearboxes that it was not shown.
 
-All attackers of all layers count as one test. A layer is accused where its AUC lies above what the strongest attacker
+All detectors of all layers count as one test. A layer is accused where its AUC lies above what the strongest detector
 of all layers reaches in every one of 99 permutations per damaged state, of the records of that state. By chance that
 happens in at most 1 of 100 sets, since a state exceeds all of n permutations with probability 1/(n + 1). Measured:
 docs/understand/audit.md. Source: maximum statistic and Bonferroni, standard literature.
@@ -59,7 +59,7 @@ from diagnostics.audit.raw_records import (
     PHASES,
     STORED,
     TEMPLATES,
-    template_attackers,
+    template_detectors,
 )
 from diagnostics.audit.spectral_shape import shape_changes
 from diagnostics.indicators.background_levels import NOISE_LEVELS
@@ -100,16 +100,16 @@ def sized_states(measured: MeasuredSet) -> list[tuple[str, tuple[str, ...]]]:
     return found
 
 
-def small_damage_attackers(measured: MeasuredSet, reference: np.ndarray) -> list[Entry]:
-    """Return attackers for every smallest state, on changes from the reference (records,); -1 without one."""
+def small_damage_detectors(measured: MeasuredSet, reference: np.ndarray) -> list[Entry]:
+    """Return detectors for every smallest state, on changes from the reference (records,); -1 without one."""
     movable = _known(movable_changes(measured, reference), reference)
     floors = _known(shape_changes(measured.raw.floors, reference), reference)
     found = []
     for smallest, larger in sized_states(measured):
         if movable:
-            found.append(_attacker(measured, f"change of {LEVELS}", smallest, larger, movable))
+            found.append(_detector(measured, f"change of {LEVELS}", smallest, larger, movable))
         if floors:
-            found.append(_attacker(measured, "change of the floor", smallest, larger[:1], floors))
+            found.append(_detector(measured, "change of the floor", smallest, larger[:1], floors))
     return found
 
 
@@ -171,7 +171,7 @@ class _LikeLarger:
         return np.asarray(self.turned * self.values[X][:, self.best].T)
 
 
-def _attacker(
+def _detector(
     measured: MeasuredSet, name: str, smallest: str, larger_states: tuple[str, ...], columns: dict[str, np.ndarray]
 ) -> Entry:
     values, names = np.stack(list(columns.values()), axis=1), tuple(columns)
@@ -234,8 +234,8 @@ MENDS = {
 """How each layer is mended."""
 
 
-def condition_attackers(measured: MeasuredSet) -> dict[str, list[Entry]]:
-    """Return the attackers of every layer."""
+def condition_detectors(measured: MeasuredSet) -> dict[str, list[Entry]]:
+    """Return the detectors of every layer."""
     reference = reference_records(measured)
     has_reference = bool((reference >= 0).any())
     changes = condition_changes(measured, reference) if has_reference else {}
@@ -253,12 +253,12 @@ def condition_attackers(measured: MeasuredSet) -> dict[str, list[Entry]]:
         lags = lag_columns(measured, reference)
         found[LAGS] = [best_column(f"change of {LAGS}", np.stack(list(lags.values()), axis=1), tuple(lags))]
     if has_reference:
-        found[LEVELS] = small_damage_attackers(measured, reference)
-    found[TEMPLATES] = template_attackers(measured.raw.templates)
+        found[LEVELS] = small_damage_detectors(measured, reference)
+    found[TEMPLATES] = template_detectors(measured.raw.templates)
     asked = measured.healthy | of_single_teeth(measured)
     for layer in OF_TEETH & found.keys():
-        found[layer] = [replace(attacker, usable=attacker.usable & asked) for attacker in found[layer]]
-    return {layer: attackers for layer, attackers in found.items() if attackers}
+        found[layer] = [replace(detector, usable=detector.usable & asked) for detector in found[layer]]
+    return {layer: detectors for layer, detectors in found.items() if detectors}
 
 
 def of_single_teeth(measured: MeasuredSet) -> np.ndarray:
@@ -274,8 +274,8 @@ def of_single_teeth(measured: MeasuredSet) -> np.ndarray:
     return np.asarray(listed & measured.unchanged)
 
 
-def level_attackers(measured: MeasuredSet, *, referenced: bool) -> list[Entry]:
-    """Return the attackers that see raw levels, or their change from a healthy record; damage moves them too."""
+def level_detectors(measured: MeasuredSet, *, referenced: bool) -> list[Entry]:
+    """Return the detectors that see raw levels, or their change from a healthy record; damage moves them too."""
     if not measured.raw.levels:
         return []
     values, names = np.stack(list(measured.raw.levels.values()), axis=1), tuple(measured.raw.levels)
@@ -287,13 +287,13 @@ def level_attackers(measured: MeasuredSet, *, referenced: bool) -> list[Entry]:
 
 
 def condition_traps(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
-    """Return a finding for every layer whose strongest attacker tells a state by more than chance explains."""
-    bank = condition_attackers(measured)
-    asked = [attacker for attackers in bank.values() for attacker in attackers]
+    """Return a finding for every layer whose strongest detector tells a state by more than chance explains."""
+    bank = condition_detectors(measured)
+    asked = [detector for detectors in bank.values() for detector in detectors]
     turns, limits, found = PERMUTATIONS * len(damaged_states(measured)), dict[str, float](), []
-    for layer, attackers in bank.items():
+    for layer, detectors in bank.items():
         every = (
-            (one, detection_by(measured, one, state, seed)) for state in damaged_states(measured) for one in attackers
+            (one, detection_by(measured, one, state, seed)) for state in damaged_states(measured) for one in detectors
         )
         defined = [(one, entry) for one, entry in every if entry.auc.value >= SMALLEST_AUC]
         if not defined:
@@ -313,6 +313,6 @@ def _finding(layer: str, name: str, entry: Detectability, tried: int, limit: flo
         f"state_told_by_{layer}",
         f"{name} alone tells {entry.state} from healthy on gearboxes that were not seen with an AUC of "
         f"{auc.value:.2f} ({auc.low:.2f} to {auc.high:.2f}){basis}",
-        f"with permuted states the strongest of {tried} attackers reaches at most {limit:.2f}",
+        f"with permuted states the strongest of {tried} detectors reaches at most {limit:.2f}",
         MENDS[layer],
     )

@@ -48,7 +48,7 @@ TARGETS = (0.75, 0.85)
 class Detectability:
     """AUC of one state against healthy, with its damage: kind of fault and means of the size labels.
 
-    `basis` is what the attacker chose most often, such as a band; `tried` how many columns it chose from or weighed.
+    `basis` is what the detector chose most often, such as a band; `tried` how many columns it chose from or weighed.
     """
 
     state: str

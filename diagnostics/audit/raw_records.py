@@ -545,8 +545,8 @@ def phase_columns(orders: list[np.ndarray]) -> dict[str, np.ndarray]:
     return found
 
 
-def template_attackers(products: dict[str, np.ndarray]) -> list[Entry]:
-    """Return the attackers on products of all pairs of records, (records, records) each, by what they are of."""
+def template_detectors(products: dict[str, np.ndarray]) -> list[Entry]:
+    """Return the detectors on products of all pairs of records, (records, records) each, by what they are of."""
     return [
         Entry(f"{TEMPLATES} of {what}", partial(GroupRidge, own), np.arange(len(own)), np.diagonal(own) > 0.0, len(own))
         for what, own in products.items()

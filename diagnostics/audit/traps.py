@@ -653,7 +653,7 @@ MOVED_BY_MANY = frozenset(
 def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
     """Return every finding, in the order of the traps; those that many causes have come last.
 
-    One finding hides no other: attackers on conditions, which name no cause, speak behind the others.
+    One finding hides no other: detectors on conditions, which name no cause, speak behind the others.
     """
     found = [
         *shared_specimens(measured),

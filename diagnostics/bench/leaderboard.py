@@ -35,7 +35,7 @@ from pyarrow import parquet
 
 from diagnostics.audit.averaged_lines import band_bank, kurtogram_maximum, line_array
 from diagnostics.audit.detectability import ADDED, LEVELS, PLAIN
-from diagnostics.audit.signal_attackers import convolution_features, level_waves, over_channels
+from diagnostics.audit.signal_detectors import convolution_features, level_waves, over_channels
 from diagnostics.base.beside import beside
 from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.process_pool import process_pool

@@ -29,7 +29,7 @@ def audit_sentence(dataset: Dataset, audit: Mapping[str, Any] | None) -> str:
     if audit is None:
         return (
             "The audit was not run. So it is not known whether something other than the damage gives the states away, "
-            f"nor what attackers on the averaged revolution find. Run it: `siggen-diagnostics audit {name}`. Then make "
+            f"nor what detectors on the averaged revolution find. Run it: `siggen-diagnostics audit {name}`. Then make "
             "this report again."
         )
     if audit.get("too_few_gearboxes"):
@@ -40,5 +40,5 @@ def audit_sentence(dataset: Dataset, audit: Mapping[str, Any] | None) -> str:
         for state in states
         if state.get("auc", {}).get("value") is not None
     ]
-    attackers = f" Its strongest attackers reach, on unseen gearboxes, an AUC of: {joined(reached)}." if reached else ""
-    return f"{audit.get('verdict', 'The audit gives no verdict.')}{attackers}"
+    detectors = f" Its strongest detectors reach, on unseen gearboxes, an AUC of: {joined(reached)}." if reached else ""
+    return f"{audit.get('verdict', 'The audit gives no verdict.')}{detectors}"

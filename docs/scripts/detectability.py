@@ -1,7 +1,7 @@
 """Figure and tables of presets.md: `python docs/scripts/detectability.py [GEARBOXES] [WORKERS] [SET ...]`.
 
 Makes three sets in runs/ where they are missing, has `siggen-diagnostics audit` attack each of them, and prints
-Markdown: the strongest attacker by state, alone and beside the gearbox's own healthy record; what the older probe of
+Markdown: the strongest detector by state, alone and beside the gearbox's own healthy record; what the older probe of
 four indicators would have claimed; and how healthy records lie in measured ranges. 24 gearboxes take some 25 minutes
 on two cores. SET is one of bench, parallel, industrial, families, edges, quickstart; without any: bench, parallel,
 edges.
@@ -60,12 +60,12 @@ SIZES = {f"face_{share}": (0.01 * share, 1.0) for share in FACES} | {
 HALVES = {"train": 10, "validation": 10, "test": 0}
 """Two shards of one size, for two workers; the audit knows no splits."""
 SPALL = {"kind": "irregular", "profile_length_mm": 1.0, "waviness": 0.0, "edge_radius_mm": 0.1}
-ALONE, WITH_REFERENCE = "strongest attacker alone", "strongest attacker with a healthy reference"
+ALONE, WITH_REFERENCE = "strongest detector alone", "strongest detector with a healthy reference"
 UNPAIRED = "logistic regression on four indicators"
 """Names in audit.json."""
 SEEN = {
-    WITH_REFERENCE: ("strongest attacker, with a healthy reference", "#1b7837", "o"),
-    ALONE: ("strongest attacker, alone", "#2166ac", "s"),
+    WITH_REFERENCE: ("strongest detector, with a healthy reference", "#1b7837", "o"),
+    ALONE: ("strongest detector, alone", "#2166ac", "s"),
     UNPAIRED: ("older probe: four indicators, alone", "#b2182b", "^"),
 }
 Entry = dict[str, Any]
@@ -135,7 +135,7 @@ def audited(folder: str, raw: dict[str, Any], workers: int) -> dict[str, dict[st
         limits = [
             f"{state} {law['auc']:.2f} (p {law['p_value']:.3f})" for state, law in found["chance"]["states"].items()
         ]
-        print(f"with permuted states the strongest attacker stays below, in 95 %: {', '.join(limits)}")
+        print(f"with permuted states the strongest detector stays below, in 95 %: {', '.join(limits)}")
     return {name: {entry["state"]: entry for entry in way["states"]} for name, way in ways.items()}
 
 
@@ -145,8 +145,8 @@ def auc(entry: Entry) -> str:
     return f"{found['value']:.2f} ({found['low']:.2f} to {found['high']:.2f})"
 
 
-def attacker(entry: Entry) -> str:
-    """Return the attacker's name, without what it chose."""
+def detector(entry: Entry) -> str:
+    """Return the detector's name, without what it chose."""
     name: str = entry["chosen"]
     return name.partition(":")[0].partition(" (")[0]
 
@@ -167,7 +167,7 @@ def ladder_table(found: dict[str, dict[str, Entry]]) -> list[str]:
     rows = [f"{head} strongest, with a healthy reference | by |", "|---|---|---|---|---|---|---|"]
     for state in (state for state in (*STATES, "through") if state in found[ALONE]):
         weak, alone, referenced = (found[way][state] for way in (UNPAIRED, ALONE, WITH_REFERENCE))
-        cells = (auc(alone), attacker(alone), auc(referenced), attacker(referenced))
+        cells = (auc(alone), detector(alone), auc(referenced), detector(referenced))
         rows.append(f"| {title(state)} | {alone['damaged_area_mm2']:.1f} | {auc(weak)} | {' | '.join(cells)} |")
     return rows
 

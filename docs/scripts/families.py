@@ -23,7 +23,7 @@ from siggen.keys.yaml_source import read_yaml
 
 RUNS, CONFIGS = Path("runs"), Path("configs")
 STATES = ("healthy", "face_80", "through")
-WAYS = ("logistic regression on four indicators", "strongest attacker alone")
+WAYS = ("logistic regression on four indicators", "strongest detector alone")
 Entry = dict[str, Any]
 
 
@@ -62,8 +62,8 @@ def value(entry: Entry) -> str:
 
 
 def table(audits: dict[str, Entry]) -> list[str]:
-    """Return the Markdown rows of what attackers find in either set."""
-    rows = ["| set | gearboxes | records | damage | four indicators | strongest attacker | by |", "|---" * 7 + "|"]
+    """Return the Markdown rows of what detectors find in either set."""
+    rows = ["| set | gearboxes | records | damage | four indicators | strongest detector | by |", "|---" * 7 + "|"]
     for name, found in audits.items():
         weak = {entry["state"]: entry for entry in found["detectability"][WAYS[0]]["states"]}
         for entry in found["strongest"][WAYS[1]]["states"]:

@@ -4,7 +4,7 @@ Takes a generated set, keeps its healthy records and those of the given states, 
 follows from them among the records of every gearbox, TURNS times. So no label tells anything. In every turn the states
 decide anew which record is the reference, and the audit makes its own permutations. What does not depend on states is
 computed once: features of every record, and of its difference from every other one of its gearbox. Prints in how many
-turns the strongest attacker on the signals, the bank counted as one test, has a p-value of 0.05 or less in the first
+turns the strongest detector on the signals, the bank counted as one test, has a p-value of 0.05 or less in the first
 state, and in how many the audit accuses the set of a trap, with exact 95 % limits (Clopper-Pearson). With `noise` for
 SET, sets of 24 gearboxes are drawn whose records are their gearbox's pattern and noise. Traps: 200 turns at most.
 """
@@ -23,7 +23,7 @@ import siggen
 from diagnostics.audit.averaged_lines import line_array
 from diagnostics.audit.bank import chance_limit
 from diagnostics.audit.measured_set import MeasuredSet, measured_set, reference_records
-from diagnostics.audit.signal_attackers import attackers_on, signal_attackers
+from diagnostics.audit.signal_detectors import detectors_on, signal_detectors
 from diagnostics.audit.traps import separability_findings
 from diagnostics.base.single_thread import single_thread
 from diagnostics.judging.evaluation import Entry
@@ -92,13 +92,13 @@ class Prepared:
         specimen = found.labels["specimen_id"]
         self.first, self.second = np.nonzero((specimen[:, None] == specimen) & ~np.eye(specimen.size, dtype=bool))
         residual = residual_lines(line_array(found.waveforms), found.labels["teeth_pinion"])
-        self.alone = attackers_on(found, residual, None, 0, lambda: None)
+        self.alone = detectors_on(found, residual, None, 0, lambda: None)
         known = residual[self.second]
         pairs = kept(found, self.first)
-        self.beside = attackers_on(pairs, residual[self.first] - known, known, 0, lambda: None)
+        self.beside = detectors_on(pairs, residual[self.first] - known, known, 0, lambda: None)
 
     def bank(self, found: MeasuredSet) -> list[Entry]:
-        """Return the attackers for the references that the states of a set give."""
+        """Return the detectors for the references that the states of a set give."""
         reference = reference_records(found)
         place = np.full(reference.size, -1)
         chosen = np.flatnonzero(self.second == reference[self.first])
@@ -142,7 +142,7 @@ def main(path: str, turns: int, states: list[str]) -> None:
     if path == "noise":
         sets = (drawn(turn) for turn in range(turns))
         found = [
-            p_value(each, signal_attackers(each, turn, lambda: None), "damaged", turn) for turn, each in enumerate(sets)
+            p_value(each, signal_detectors(each, turn, lambda: None), "damaged", turn) for turn, each in enumerate(sets)
         ]
     else:
         every = measured_set(siggen.open(path))

@@ -1,7 +1,7 @@
 """Leaks planted into the files of a set, and what the audit says: `planted_files.py SET FOLDER [--only ...]`.
 
 Copies the set into FOLDER, plants one leak at a time, seals the copy again, and looks for traps as
-`siggen-diagnostics audit` does; its attackers on the gears are left out, which accuse no damaged state. Prints
+`siggen-diagnostics audit` does; its detectors on the gears are left out, which accuse no damaged state. Prints
 Markdown: what was planted, what is found beyond the set as it is. The first row is that set. A copy is deleted when it
 is judged; what was found stays in FOLDER, and a kind that was judged there is not judged again.
 """

@@ -1,6 +1,6 @@
 """What audits say of clean sets: `python docs/scripts/shams.py SET_audit ...`, of folders that `audit` wrote.
 
-Prints Markdown, a row for each set: the traps that were found, and the largest AUC of all attackers on its sham, alone
+Prints Markdown, a row for each set: the traps that were found, and the largest AUC of all detectors on its sham, alone
 and beside a healthy record, with what the largest stays below in 95 % of 499 permutations. Networks count, though they
 are not permuted.
 """

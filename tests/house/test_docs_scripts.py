@@ -12,7 +12,7 @@ from tests.house.source_tree import ROOT
 
 FOLDER = ROOT / "docs" / "scripts"
 SCRIPTS = sorted(FOLDER.glob("*.py"))
-APART = {"attackers": {"aeon"}, "isa_findings": {"isatools"}, "example_pages": {"mkdocs"}}
+APART = {"detectors": {"aeon"}, "isa_findings": {"isatools"}, "example_pages": {"mkdocs"}}
 """Script -> packages of an environment of their own, as its first lines say, or of the extra that builds the site."""
 
 

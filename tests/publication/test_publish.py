@@ -151,7 +151,7 @@ def test_the_card_of_a_machine_says_what_its_file_says() -> None:
     assert "gear eva" in rows["states.severe.damage"]
 
 
-def test_the_card_quotes_the_strongest_attacker_of_the_audit_of_this_set_alone(kept: Path, tmp_path: Path) -> None:
+def test_the_card_quotes_the_strongest_detector_of_the_audit_of_this_set_alone(kept: Path, tmp_path: Path) -> None:
     best = {
         "slight": {"indicator": "rms__x", "tried": 40, "auc_chosen_on_other_gearboxes": 0.71},
         "severe": {"indicator": "fm4__x", "tried": 40, "auc_chosen_on_other_gearboxes": 0.98},

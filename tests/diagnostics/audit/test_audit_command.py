@@ -11,7 +11,7 @@ import pytest
 from planted_set import Plant, PlantedSet, planted
 from scipy.io import wavfile
 
-from diagnostics.audit import bank, condition_traps, signal_attackers
+from diagnostics.audit import bank, condition_traps, signal_detectors
 from diagnostics.cli.app import main
 from siggen.dataset import reading
 
@@ -28,12 +28,12 @@ def clean() -> PlantedSet:
 
 @pytest.fixture(autouse=True)
 def quick_bank(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Few steps of training and few permutations: what they find is tested with the attackers."""
+    """Few steps of training and few permutations: what they find is tested with the detectors."""
     monkeypatch.setattr(condition_traps, "PERMUTATIONS", 19)
     monkeypatch.setattr(bank, "PERMUTATIONS", 19)
-    monkeypatch.setattr(signal_attackers, "SHOWN", 0)
-    monkeypatch.setattr(signal_attackers, "FEWEST_EPOCHS", 1)
-    monkeypatch.setattr(signal_attackers, "DILATIONS", (1, 8))
+    monkeypatch.setattr(signal_detectors, "SHOWN", 0)
+    monkeypatch.setattr(signal_detectors, "FEWEST_EPOCHS", 1)
+    monkeypatch.setattr(signal_detectors, "DILATIONS", (1, 8))
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:

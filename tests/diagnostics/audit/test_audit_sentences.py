@@ -28,23 +28,23 @@ BEST = {
 AUDIT = Audit((), "No trap.", None, {"indicators": ENTRIES}, (), 0.1, 96, 24, 2, 0, BEST)
 
 
-def test_the_strongest_attacker_is_named_with_interval_and_number_and_lost_means_all_failed() -> None:
+def test_the_strongest_detector_is_named_with_interval_and_number_and_lost_means_all_failed() -> None:
     bank = {
         "indicators": ENTRIES,
         "best band": [replace(detection("severe", 1.0, 0.97), basis="orders 9 to 40", tried=300)],
     }
     found = audit_summary(replace(AUDIT, detections=bank, chance=ChanceLimit(0.66, 8, 100)))
     assert found[1] == "The audit used 96\xa0records of 24\xa0specimens (gearboxes) in 2\xa0channels."
-    assert "mild is the hardest to find. The strongest of 2\xa0attackers" in found[2]
+    assert "mild is the hardest to find. The strongest of 2\xa0detectors" in found[2]
     assert "is the best single indicator, chosen among 820\xa0columns: AUC 0.51." in found[2]
     assert "is best band: AUC 0.97 (0.92 to 1.02), most often orders 9 to 40 among 300\xa0columns." in found[2]
-    assert "8\xa0attackers stays below an AUC of 0.66 in 95\xa0% of 100 permutations" in found[3]
-    assert found[4] == "No attacker found mild. These failed: the best single indicator and indicators."
-    # of the attackers alone: linear between the states, 20 (0.5 + 0.5 (0.75 - 0.5) / 0.47)
-    assert "0.75 is reached from 15\xa0mm² of spalling by strongest attacker alone" in found[5]
+    assert "8\xa0detectors stays below an AUC of 0.66 in 95\xa0% of 100 permutations" in found[3]
+    assert found[4] == "No detector found mild. These failed: the best single indicator and indicators."
+    # of the detectors alone: linear between the states, 20 (0.5 + 0.5 (0.75 - 0.5) / 0.47)
+    assert "0.75 is reached from 15\xa0mm² of spalling by strongest detector alone" in found[5]
 
 
-def test_what_an_attacker_reaches_on_a_sham_is_no_damage() -> None:
+def test_what_an_detector_reaches_on_a_sham_is_no_damage() -> None:
     def sham(auc: float, **reached: float) -> ShamFound:
         chance = StateChance(0.66, 0.3, "block")
         return ShamFound("sham", "alone", "best band", Interval(auc, auc - 0.1, auc + 0.1), chance, reached)
@@ -60,7 +60,7 @@ def test_what_an_attacker_reaches_on_a_sham_is_no_damage() -> None:
     ]
     leaking = replace(audit, shams=(sham(0.95, indicators=0.93),))
     assert verdict_words(leaking, "severe") == ("not shown to be damage: indicators reaches 0.90, and 0.93 on a sham")
-    # an attacker that was not asked about the sham is held against the strongest, if that tells more than chance does
+    # a detector that was not asked about the sham is held against the strongest, if that tells more than chance does
     unasked = replace(audit, shams=(sham(0.95, other=0.95),))
     assert verdict_words(unasked, "severe").startswith("can be found")
     told = replace(unasked.shams[0], chance=StateChance(0.66, 0.002, "block"))
@@ -84,7 +84,7 @@ def test_where_chance_reaches_what_a_trap_is_accused_of_nothing_is_said_to_be_fo
     found = audit_summary(few)
     assert found[0].startswith("There are too few gearboxes to tell: chance reaches an AUC of 1.00.")
     assert found[0].endswith("Use at least 24\xa0gearboxes in place of 6.")
-    assert not any("is reached from" in sentence or "No attacker found" in sentence for sentence in found)
+    assert not any("is reached from" in sentence or "No detector found" in sentence for sentence in found)
     assert verdict_words(few, "severe") == "too few gearboxes to tell (0.95 by the best single indicator)"
     assert few.tells_too_little
     told = replace(few, chance=replace(chance, auc=0.89))
@@ -111,13 +111,13 @@ def test_a_single_state_is_neither_hardest_nor_easiest(auc: float) -> None:
     assert "nan" not in " ".join(found)
 
 
-def test_the_card_says_lost_only_where_the_strongest_attacker_stays_below_chance() -> None:
+def test_the_card_says_lost_only_where_the_strongest_detector_stays_below_chance() -> None:
     assert verdict_words(AUDIT, "severe") == "can be found, best by the best single indicator (0.95)"
     assert verdict_words(AUDIT, "mild") == "not found by the best single indicator (0.51) and indicators (0.50)"
     weak = replace(AUDIT, best={"mild": replace(BEST["mild"], held_out=0.65)})
     assert verdict_words(weak, "mild").startswith("hard to find, best by the best single indicator (0.65) of")
     assert verdict_words(replace(weak, chance=ChanceLimit(0.66, 8, 100)), "mild").startswith("not found by")
-    # one attacker that finds it is enough, whatever the others say
+    # one detector that finds it is enough, whatever the others say
     found = replace(AUDIT, best={"mild": replace(BEST["mild"], held_out=0.8)})
     assert verdict_words(found, "mild") == "can be found, best by the best single indicator (0.80)"
     assert verdict_words(replace(AUDIT, detections={}, best={}), "mild") == "not judged"

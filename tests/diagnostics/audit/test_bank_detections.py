@@ -1,4 +1,4 @@
-"""The limit of the strongest attacker: how often chance exceeds it."""
+"""The limit of the strongest detector: how often chance exceeds it."""
 
 from __future__ import annotations
 

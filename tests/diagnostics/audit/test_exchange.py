@@ -1,4 +1,4 @@
-"""Exchanging states is exact on sets without any effect, also for attackers that see a healthy reference."""
+"""Exchanging states is exact on sets without any effect, also for detectors that see a healthy reference."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ ALIKE = cast(
 
 
 def p_value(seed: int, reference: np.ndarray, block: np.ndarray) -> float:
-    """The p-value of an attacker on the size of the change, of noise about the pattern of a gearbox."""
+    """The p-value of a detector on the size of the change, of noise about the pattern of a gearbox."""
     rng = np.random.default_rng(seed)
     lines = rng.standard_normal((GEARBOXES, ORDERS))[SPECIMEN] + rng.standard_normal((SPECIMEN.size, ORDERS))
     size = np.log10(np.square(lines - lines[reference]).sum(axis=1))
-    attacker = best_column("change", np.where(reference >= 0, size, np.nan)[:, None], ("",))
+    detector = best_column("change", np.where(reference >= 0, size, np.nan)[:, None], ("",))
     ways = np.concatenate([DAMAGED[None], permuted(DAMAGED, block, SPECIMEN, seed, PERMUTATIONS)])
-    maxima = bank_maxima([attacker], np.arange(SPECIMEN.size), ways, SPECIMEN, DESIGN.dealt(SPECIMEN, seed)[:1])
+    maxima = bank_maxima([detector], np.arange(SPECIMEN.size), ways, SPECIMEN, DESIGN.dealt(SPECIMEN, seed)[:1])
     return float(np.mean(maxima >= maxima[0]))
 
 

@@ -9,7 +9,7 @@ from scipy.signal import freqz, zpk2tf
 
 from diagnostics.audit.averaged_lines import whitened
 from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.signal_attackers import tooth_attacker
+from diagnostics.audit.signal_detectors import tooth_detector
 from diagnostics.signal.innovations import innovations
 
 TEETH, STEPS = 18, 1024
@@ -74,12 +74,12 @@ def of_labels(labels: dict[str, Any]) -> MeasuredSet:
 
 def test_an_event_at_a_named_tooth_is_found_on_other_gearboxes_and_nothing_without_one() -> None:
     found, lines = measured(np.random.default_rng(3))
-    attacker = tooth_attacker("teeth", found, lines)
-    assert attacker is not None
+    detector = tooth_detector("teeth", found, lines)
+    assert detector is not None
     train = SPECIMEN < GEARBOXES // 2
     learn, asked = np.flatnonzero(train), np.flatnonzero(~train)
-    score = attacker.make().fit(learn, DAMAGED[None, train], SPECIMEN[train]).score(asked)[0]
+    score = detector.make().fit(learn, DAMAGED[None, train], SPECIMEN[train]).score(asked)[0]
     held = DAMAGED[~train]
     assert np.mean(score[held][:, None] > score[~held]) > 0.9
-    nothing = tooth_attacker("teeth", of_labels({"teeth_pinion": np.array([18])}), lines)
+    nothing = tooth_detector("teeth", of_labels({"teeth_pinion": np.array([18])}), lines)
     assert nothing is None

@@ -7,7 +7,7 @@ import pytest
 
 from diagnostics.audit.bank import DESIGN, permuted
 from diagnostics.audit.condition_layers import noise_excess
-from diagnostics.audit.condition_traps import sized_states, small_damage_attackers
+from diagnostics.audit.condition_traps import sized_states, small_damage_detectors
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.audit.raw_records import RawColumns
 from diagnostics.judging.evaluation import held_out
@@ -79,11 +79,11 @@ def test_small_damage_counts_only_where_large_damage_does_no_more(
     levels = {f"level {k}": 10.0 * SPECIMEN + scatter[:, k] + effect * (k == 2) for k in range(4)}
     found = measured(np.zeros(SPECIMEN.size), np.zeros(SPECIMEN.size), levels)
     assert [smallest for smallest, _ in sized_states(found)] == ["small"]
-    (attacker,) = small_damage_attackers(found, reference_records(found))
-    rows = np.flatnonzero(attacker.usable)
+    (detector,) = small_damage_detectors(found, reference_records(found))
+    rows = np.flatnonzero(detector.usable)
     of_state, specimen = STATES[rows] == "small", SPECIMEN[rows]
     folds = DESIGN.dealt(SPECIMEN, 0)[:, rows]
-    auc = held_out(attacker, rows, of_state, specimen, folds, 0).auc.value
+    auc = held_out(detector, rows, of_state, specimen, folds, 0).auc.value
     # 24 and 24 records without any effect scatter by 0.08
     assert auc > 0.9 if is_told else auc < 0.75
 
@@ -91,9 +91,9 @@ def test_small_damage_counts_only_where_large_damage_does_no_more(
 def test_permuting_finds_the_columns_anew() -> None:
     levels = {"level": np.random.default_rng(4).normal(0.0, 0.1, SPECIMEN.size)}
     found = measured(np.zeros(SPECIMEN.size), np.zeros(SPECIMEN.size), levels)
-    (attacker,) = small_damage_attackers(found, reference_records(found))
-    rows = np.flatnonzero(attacker.usable)
+    (detector,) = small_damage_detectors(found, reference_records(found))
+    rows = np.flatnonzero(detector.usable)
     ways = permuted(STATES[rows] == "small", SPECIMEN[rows], SPECIMEN[rows], 0, 20)
     folds = DESIGN.dealt(SPECIMEN, 0)[:, rows]
-    areas = [held_out(attacker, rows, way, SPECIMEN[rows], folds, 0).auc.value for way in ways]
+    areas = [held_out(detector, rows, way, SPECIMEN[rows], folds, 0).auc.value for way in ways]
     assert np.mean(areas) == pytest.approx(0.5, abs=0.06)  # 20 of a spread of 0.1

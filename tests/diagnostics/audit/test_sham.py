@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnostics.audit.bank import sham_sentences, sham_traps, shams_found
-from diagnostics.audit.condition_traps import level_attackers
+from diagnostics.audit.condition_traps import level_detectors
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.raw_records import RawColumns
 from diagnostics.judging.alarms import judged_alarm
@@ -42,7 +42,7 @@ def test_a_gain_of_shams_is_told_by_raw_levels_and_a_clean_set_is_not_accused() 
     for gain_db, expected in ((0.0, []), (2.0, ["sham_told_from_healthy"])):
         raw = RawColumns(levels={"rms of lid": rms + gain_db * (STATES == "sham")})
         asked = replace(measured(), raw=raw)
-        found = shams_found(asked, {"alone": level_attackers(asked, referenced=False)}, 0)
+        found = shams_found(asked, {"alone": level_detectors(asked, referenced=False)}, 0)
         assert [trap.trap for trap in sham_traps(found)] == expected
 
 

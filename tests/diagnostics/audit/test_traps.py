@@ -50,7 +50,7 @@ def traps(found: MeasuredSet) -> list[str]:
 
 
 def named(found: MeasuredSet) -> list[str]:
-    """Return the findings that name a cause; attackers of layers, which take nearly all the time, are not asked."""
+    """Return the findings that name a cause; detectors of layers, which take nearly all the time, are not asked."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(findings, "condition_traps", lambda *_: [])
         return traps(found)
@@ -105,7 +105,7 @@ def test_of_ten_traps_one_per_layer_each_is_found_and_named(clean: MeasuredSet, 
     assert (traps if FOUND_AS[layer].startswith(LAYER) else named)(found) == [FOUND_AS[layer]]
 
 
-def test_attackers_see_no_label_of_damage_and_nothing_that_follows_from_it(clean: MeasuredSet) -> None:
+def test_detectors_see_no_label_of_damage_and_nothing_that_follows_from_it(clean: MeasuredSet) -> None:
     raw = {"edges", "offsets", "lines", "samples", "ends", "clock", "codes", "course", "blocks", "phases"}
     raw |= {"locked", "low_bits", "echoes"}
     assert set(condition_layers(clean)) == {"metadata", "texts", "order", "bytes", "noise", "channels"} | raw

@@ -39,7 +39,7 @@ def learned(made: Made, tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("diagnostics.bench.leaderboard.missing_packages", lambda *_: ("torch",))
         patch.setattr("diagnostics.bench.leaderboard.FOLDS", 2)
-        patch.setattr("diagnostics.audit.signal_attackers.DILATIONS", (1, 8))
+        patch.setattr("diagnostics.audit.signal_detectors.DILATIONS", (1, 8))
         diagnostics.benchmark_baselines(bench)
     return bench
 

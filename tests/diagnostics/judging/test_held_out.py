@@ -1,4 +1,4 @@
-"""Attackers are judged on gearboxes that they were not shown; ridge against refits; chance against its own law."""
+"""Detectors are judged on gearboxes that they were not shown; ridge against refits; chance against its own law."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ def test_the_best_of_many_empty_columns_is_at_chance_on_unseen_gearboxes_only() 
     area, shown = [], []
     for seed in range(30):
         values = noise(seed)
-        for attacker in (best_column("best", values, names()), all_columns("all", values)):
-            area.append(held_out(attacker, every, damaged, specimen, folds, 0).auc.value)
+        for detector in (best_column("best", values, names()), all_columns("all", values)):
+            area.append(held_out(detector, every, damaged, specimen, folds, 0).auc.value)
         told = BestColumn(names()).fit(values, damaged, specimen).score(values)
         shown.append(np.mean(told[damaged][:, None] > told[~damaged]))
     # spread of one AUC 0.1, of the mean over 60 about 0.015
@@ -59,14 +59,14 @@ def test_a_planted_column_is_chosen_and_named_and_too_few_gearboxes_are_not_judg
     specimen, damaged = design()
     values = noise(3)
     values[:, 7] -= 4.0 * damaged
-    attacker = best_column("best", values, names())
-    found = held_out(attacker, np.arange(specimen.size), damaged, specimen, DESIGN.dealt(specimen, 0), 0)
+    detector = best_column("best", values, names())
+    found = held_out(detector, np.arange(specimen.size), damaged, specimen, DESIGN.dealt(specimen, 0), 0)
     assert found.basis == "column 7"
     assert found.auc.value > 0.95
     assert found.auc.low == pytest.approx(0.025 ** (1 / 16))  # Clopper and Pearson: no surer than all 16 of 16 right
-    assert judged_rows(attacker, ~damaged, damaged, specimen).size == specimen.size
+    assert judged_rows(detector, ~damaged, damaged, specimen).size == specimen.size
     few = damaged & (specimen < 3)
-    assert judged_rows(attacker, ~damaged, few, specimen).size == 0
+    assert judged_rows(detector, ~damaged, few, specimen).size == 0
 
 
 def test_the_dual_form_is_ridge_regression_and_its_penalty_the_one_of_refits_without_each_gearbox() -> None:
@@ -145,7 +145,7 @@ def test_many_ways_of_stating_the_damage_give_what_each_gives_alone() -> None:
     values += np.random.default_rng(5).standard_normal(12) * 3.0
     rows, folds = np.arange(specimen.size), DESIGN.dealt(specimen, 0)
     ways = np.concatenate([damaged[None], permuted(damaged, specimen, specimen, 0, 9)])
-    for attacker in (best_column("best", values, names(12)), all_columns("all", values)):
-        together = held_out_values(attacker, rows, ways, specimen, folds)
-        alone = [held_out(attacker, rows, way, specimen, folds, 0).auc.value for way in ways]
+    for detector in (best_column("best", values, names(12)), all_columns("all", values)):
+        together = held_out_values(detector, rows, ways, specimen, folds)
+        alone = [held_out(detector, rows, way, specimen, folds, 0).auc.value for way in ways]
         assert together == pytest.approx(np.array(alone), abs=1e-12)

@@ -1,4 +1,4 @@
-"""Attackers that look at averaged waveforms: each alone, and as differences from the gearbox's own healthy record.
+"""Detectors that look at averaged waveforms: each alone, and as differences from the gearbox's own healthy record.
 
 All of them start from the lines of the pinion's averaged revolution in the one table of the set, without shaft and mesh
 orders; alone behind the inverse of their path (`innovations`). Nothing of a record's level is used alone, but by the
@@ -114,8 +114,8 @@ class _LoudestTooth:
         return np.maximum.reduceat(self.model.decision_function(np.concatenate(asked)), first)[None]
 
 
-def tooth_attacker(name: str, measured: MeasuredSet, lines: np.ndarray) -> Entry | None:
-    """Return the attacker, or None where no label names a tooth of the first driver.
+def tooth_detector(name: str, measured: MeasuredSet, lines: np.ndarray) -> Entry | None:
+    """Return the detector, or None where no label names a tooth of the first driver.
 
     Parameters
     ----------
@@ -181,8 +181,8 @@ class _FoldNetwork:
         return np.asarray(self.said[X][None])
 
 
-def network_attacker(name: str, measured: MeasuredSet, reference: np.ndarray | None, seed: int) -> Entry | None:
-    """Return the attacker, or None without PyTorch.
+def network_detector(name: str, measured: MeasuredSet, reference: np.ndarray | None, seed: int) -> Entry | None:
+    """Return the detector, or None without PyTorch.
 
     Parameters
     ----------
@@ -255,8 +255,8 @@ def _of_waves(waves: np.ndarray, first: int) -> np.ndarray:
     return np.stack(found, axis=1).astype(np.float32)
 
 
-def signal_attackers(measured: MeasuredSet, seed: int, advance: Callable[[], None]) -> list[Entry]:
-    """Return the attackers; those with a reference only where records have one, the network only with PyTorch.
+def signal_detectors(measured: MeasuredSet, seed: int, advance: Callable[[], None]) -> list[Entry]:
+    """Return the detectors; those with a reference only where records have one, the network only with PyTorch.
 
     Parameters
     ----------
@@ -265,21 +265,21 @@ def signal_attackers(measured: MeasuredSet, seed: int, advance: Callable[[], Non
     seed : int
         Of the network.
     advance : callable
-        Called after every attacker that is prepared.
+        Called after every detector that is prepared.
     """
     residual = residual_lines(line_array(measured.waveforms), measured.teeth)
-    found = attackers_on(measured, residual, None, seed, advance)
+    found = detectors_on(measured, residual, None, seed, advance)
     reference = reference_records(measured)
     if (reference >= 0).any():
         known = np.where((reference >= 0)[:, None, None], residual[reference], np.nan)
-        found += attackers_on(measured, residual - known, known, seed, advance)
+        found += detectors_on(measured, residual - known, known, seed, advance)
     return found
 
 
-def attackers_on(
+def detectors_on(
     measured: MeasuredSet, residual: np.ndarray, reference: np.ndarray | None, seed: int, advance: Callable[[], None]
 ) -> list[Entry]:
-    """Return the attackers on residual lines, which are differences where a reference is given.
+    """Return the detectors on residual lines, which are differences where a reference is given.
 
     Parameters
     ----------
@@ -288,7 +288,7 @@ def attackers_on(
     reference : (records, channels, orders) complex128, optional
         What the residual is a difference from, NaN where there is none.
     seed, advance
-        As of `signal_attackers`.
+        As of `signal_detectors`.
     """
     suffix = REFERENCED if reference is not None else ""
     flat = innovations(residual, measured.teeth)
@@ -300,14 +300,14 @@ def attackers_on(
     features = convolution_features(waves)
     advance()
     places = reference_records(measured) if reference is not None else None
-    network = network_attacker(NETWORK + suffix, measured, places, seed)
-    teeth = tooth_attacker(f"teeth{suffix}", measured, flat)
+    network = network_detector(NETWORK + suffix, measured, places, seed)
+    teeth = tooth_detector(f"teeth{suffix}", measured, flat)
     return [
         best_column(f"best band{suffix}", values, names),
         all_columns(f"all bands{suffix}", values),
         best_column(f"kurtogram{suffix}", mean_of_defined(highest, axis=1)[:, None], ("",)),
         all_columns(f"random convolutions{suffix}", features),
-        *(attacker for attacker in (teeth, network) if attacker),
+        *(detector for detector in (teeth, network) if detector),
     ]
 
 

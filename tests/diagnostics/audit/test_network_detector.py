@@ -8,7 +8,7 @@ from typing import cast
 import numpy as np
 import pytest
 
-from diagnostics.audit import signal_attackers
+from diagnostics.audit import signal_detectors
 from diagnostics.audit.measured_set import MeasuredSet
 
 GEARBOXES, STEPS = 16, 1024
@@ -34,17 +34,17 @@ def test_it_finds_a_burst_wherever_it_is_and_says_the_same_twice(
     referenced: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("torch")
-    monkeypatch.setattr(signal_attackers, "SHOWN", 900)
+    monkeypatch.setattr(signal_detectors, "SHOWN", 900)
     # the other healthy record of the gearbox: record 1 for record 0, record 0 for the others
     reference = np.array([1, 0, 0] * GEARBOXES) + 3 * SPECIMEN if referenced else None
 
     def score() -> np.ndarray:
-        attacker = signal_attackers.network_attacker("network", bursts(), reference, 0)
-        assert attacker is not None
-        assert attacker.usable.all()
-        assert not attacker.many
+        detector = signal_detectors.network_detector("network", bursts(), reference, 0)
+        assert detector is not None
+        assert detector.usable.all()
+        assert not detector.many
         learn, places = SPECIMEN < 10, np.arange(SPECIMEN.size)
-        return attacker.make().fit(places[learn], DAMAGED[None, learn], SPECIMEN[learn]).score(places[~learn])[0]
+        return detector.make().fit(places[learn], DAMAGED[None, learn], SPECIMEN[learn]).score(places[~learn])[0]
 
     first, held = score(), DAMAGED[SPECIMEN >= 10]
     assert np.mean(first[held][:, None] > first[~held]) > 0.9
@@ -56,8 +56,8 @@ def test_a_record_without_average_or_reference_is_not_asked_about() -> None:
     found = bursts()
     found.waveforms[3] = [np.empty(0, np.complex64)]
     reference = np.where(SPECIMEN == 0, -1, 3)  # the references of all others are record 3, which has no average
-    alone = signal_attackers.network_attacker("network", found, None, 0)
-    beside = signal_attackers.network_attacker("network", found, reference, 0)
+    alone = signal_detectors.network_detector("network", found, None, 0)
+    beside = signal_detectors.network_detector("network", found, reference, 0)
     assert alone is not None
     assert beside is not None
     assert np.flatnonzero(~alone.usable).tolist() == [3]
