@@ -55,6 +55,13 @@ def test_its_teeth_have_kinds_of_pairs_of_their_own() -> None:
     assert (sham > 0).sum() == (real > 0).sum()
 
 
+def test_rounding_in_the_tables_of_its_teeth_is_no_loss_of_stiffness() -> None:
+    chosen = load_config("quickstart")
+    specimen = chosen.gearbox(1)
+    sham = [state.name for state in chosen.config.states].index("sham")
+    assert specimen_state(specimen, sham).static.largest_loss(specimen.points[0].torque_nm) == 0.0
+
+
 def test_it_shifts_no_other_state() -> None:
     real = {"name": "real", "severity": "severe", "damage": {"kind": "spall", **DAMAGES["spall"]}}
     grown = {"name": "grown", "grows": "real", "damage": {"teeth": 2}}

@@ -44,7 +44,7 @@ def test_the_strongest_detector_is_named_with_interval_and_number_and_lost_means
     assert "0.75 is reached from 15\xa0mm² of spalling by strongest detector alone" in found[5]
 
 
-def test_what_an_detector_reaches_on_a_sham_is_no_damage() -> None:
+def test_what_a_detector_reaches_on_a_sham_is_no_damage() -> None:
     def sham(auc: float, **reached: float) -> ShamFound:
         chance = StateChance(0.66, 0.3, "block")
         return ShamFound("sham", "alone", "best band", Interval(auc, auc - 0.1, auc + 0.1), chance, reached)
