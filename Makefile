@@ -7,7 +7,7 @@ DEMO := runs/quickstart
 # TARGETS only exists after an install that was complete; a change of the pins installs again.
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-slow test-lowest lint bench pages reference docs wheel container locks clean
+.PHONY: demo test test-slow test-lowest lint bench pages reference docs wheel draft container locks clean
 
 $(STAMP): pyproject.toml constraints.txt
 	@echo "installing into $(VENV), once: about 2 minutes, and the download; 2 GB with the CPU build of PyTorch, more with the CUDA build"
@@ -63,9 +63,15 @@ reference: $(STAMP)
 docs: $(VENV)/.documented
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
 
-# Builds it, and tries it in an environment that has nothing else, with the hashes of locks/siggen.txt.
-wheel: $(STAMP)
-	$(BIN)/python docs/scripts/bare_wheel.py dist
+# All files of a release, in dist/; the wheel is tried where nothing else is, with the hashes of locks/siggen.txt.
+wheel: demo
+	rm -rf dist
+	$(BIN)/python docs/scripts/release_files.py dist $(DEMO) $(DEMO)_report/report.html
+
+# Gives them to the draft of a release (TAG=v0.3.0), which a person publishes. Refused if the wheel has another version.
+draft:
+	ls dist/siggen_gears-$(TAG:v%=%)-py3-none-any.whl
+	gh release create $(TAG) --draft --verify-tag --title $(TAG) --notes "CHANGELOG.md says what changed." dist/*
 
 container:
 	docker build --file Containerfile --tag siggen .

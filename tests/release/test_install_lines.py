@@ -19,8 +19,8 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["
 EXTRAS = PROJECT["optional-dependencies"]
 FOLDERS = (".github", "benchmarks", "configs", "diagnostics", "docs", "locks", "siggen", "tests")
 OURS = {"siggen", "diagnostics", "siggen-diagnostics", DISTRIBUTION}
-OTHERS = {"axe-core-python", "isatools", "plotly", "ross-rotordynamics", "uv"}
-"""Names that a page may install beside the dependencies of pyproject.toml: tools that checks compare with."""
+OTHERS = {"axe-core-python", "build", "cyclonedx-bom", "isatools", "pip-audit", "plotly", "ross-rotordynamics", "uv"}
+"""Names that a page may install beside the dependencies of pyproject.toml: tools that check or build."""
 INSTALLS = re.compile(
     r"(?:(?:pip3?|conda|mamba|pipx|micropip)[ .]install|pipx run|uvx|uv (?:add|pip install|tool (?:run|install)))[ (]"
     r"(?P<operands>[^\n`;)#|&]*)"

@@ -1,4 +1,4 @@
-"""The wheel works where nothing else is, and the steps of the container file do what they say."""
+"""The files of a release are whole, its wheel works where nothing else is, the container file does what it says."""
 
 from __future__ import annotations
 
@@ -8,11 +8,14 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
 
+from tests.command import command
 from tests.house.source_tree import ROOT
+from tests.release.test_locks import pins
 
 
 def steps() -> list[list[tuple[str, str]]]:
@@ -41,11 +44,30 @@ def test_the_container_file_has_what_it_copies_and_ends_as_a_user_without_rights
 
 @pytest.mark.slow  # installs numpy, scipy, numba and pyarrow, and compiles
 @pytest.mark.timeout(1800)
-def test_the_wheel_works_in_a_bare_environment(tmp_path: Path) -> None:
-    command = [sys.executable, str(ROOT / "docs/scripts/bare_wheel.py"), str(tmp_path)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+def test_the_files_of_a_release_are_whole_and_its_wheel_works_in_a_bare_environment(tmp_path: Path) -> None:
+    finished, page = tmp_path / "quickstart", ROOT / "docs/reports/quickstart_report.html"
+    small = ["--set", "specimens=1", "--set", "duration_s=0.2", "--workers", "0"]
+    assert command("siggen", "generate", "quickstart", "--out", str(finished), *small).returncode == 0
+    files = [ROOT / "docs/scripts/release_files.py", tmp_path / "dist", finished, page]
+    done = subprocess.run([sys.executable, *map(str, files)], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "siggen verify set" in done.stdout
+    assert "siggen verify quickstart" in done.stdout
+
+    subprocess.run(["sha256sum", "--check", "--strict", "SHA256SUMS"], cwd=tmp_path / "dist", check=True)
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    stem = f"siggen_gears-{version}"
+    wanted = {f"{stem}{end}" for end in ("-py3-none-any.whl", ".tar.gz", ".cdx.json")}
+    wanted |= {"quickstart.zip", "quickstart_report.html"}
+    hashed = {line.split()[1] for line in (tmp_path / "dist/SHA256SUMS").read_text(encoding="utf-8").splitlines()}
+    assert hashed == wanted == {file.name for file in (tmp_path / "dist").iterdir()} - {"SHA256SUMS"}
+
+    listed = json.loads((tmp_path / "dist" / f"{stem}.cdx.json").read_text(encoding="utf-8"))
+    assert listed["bomFormat"] == "CycloneDX"
+    described = listed["metadata"]["component"]
+    assert (described["name"], described["version"]) == ("siggen-gears", version)
+    components = {component["name"]: component["version"] for component in listed["components"]}
+    assert components == pins("locks/siggen.txt")
+    assert len(listed["components"]) == len(components)
 
 
 @pytest.mark.slow  # as above

@@ -14,6 +14,9 @@ from tests.house.source_tree import ROOT
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 TARGETS = set(re.findall(r"^([a-z][a-z-]*):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
 
+DRAFTING = {"contents": "write", "id-token": "write", "attestations": "write"}
+"""What the one job may do that makes the draft of a release and attests where its files come from."""
+
 
 def jobs(path: Path) -> dict[str, Any]:
     found: dict[str, Any] = yaml.safe_load(path.read_text(encoding="utf-8"))["jobs"]
@@ -38,6 +41,8 @@ def test_a_workflow_has_the_parts_that_github_asks_for(path: Path) -> None:
     assert content[True]  # YAML 1.1 reads the key `on` as true
     assert content["permissions"] == {"contents": "read"}
     for job in content["jobs"].values():
+        drafts = any(step.get("run") == "make draft" for step in job["steps"])
+        assert job.get("permissions") == (DRAFTING if drafts else None)
         assert job["runs-on"] == "ubuntu-latest"
         assert job["timeout-minutes"] <= 180
         assert job["steps"][0]["uses"].startswith("actions/checkout@v")
