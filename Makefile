@@ -59,9 +59,9 @@ reference: $(STAMP)
 	done
 	$(BIN)/python docs/scripts/gallery.py > docs/start/gallery.md
 
-# NO_MKDOCS_2_WARNING silences the note that the theme is maintained until May 2027; its successor reads mkdocs.yml too.
 docs: $(VENV)/.documented
-	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
+	rm -rf site
+	$(BIN)/python docs/scripts/documentation_site.py site
 
 # All files of a release, in dist/; the wheel is tried where nothing else is, with the hashes of locks/siggen.txt.
 wheel: demo

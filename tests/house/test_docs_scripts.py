@@ -12,8 +12,6 @@ from tests.house.source_tree import ROOT
 
 FOLDER = ROOT / "docs" / "scripts"
 SCRIPTS = sorted(FOLDER.glob("*.py"))
-APART = {"detectors": {"aeon"}, "isa_findings": {"isatools"}, "example_pages": {"mkdocs"}}
-"""Script -> packages of an environment of their own, as its first lines say, or of the extra that builds the site."""
 
 
 def wanted(path: Path) -> list[tuple[str, str]]:
@@ -42,9 +40,7 @@ def found(module: str, name: str) -> bool:
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
 def test_all_imports_of_a_script_are_there(script: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(FOLDER)  # a script may import one beside it
-    apart = APART.get(script.stem, set())
-    needed = [(module, name) for module, name in wanted(script) if module.partition(".")[0] not in apart]
-    assert [f"{module}: {name}" for module, name in needed if not found(module, name)] == []
+    assert [f"{module}: {name}" for module, name in wanted(script) if not found(module, name)] == []
 
 
 def test_a_moved_module_and_a_renamed_function_are_noticed(tmp_path: Path) -> None:

@@ -55,6 +55,11 @@ def test_every_relative_link_leads_somewhere() -> None:
     assert {str(page.relative_to(ROOT)): links for page in PAGES if (links := broken(page))} == {}
 
 
+def test_the_site_leads_to_every_page() -> None:
+    named = re.findall(r"^ +- .*?([\w/]+\.md)$", (ROOT / "mkdocs.yml").read_text(encoding="utf-8"), re.MULTILINE)
+    assert sorted(named) == sorted(str(page.relative_to(ROOT / "docs")) for page in (ROOT / "docs").rglob("*.md"))
+
+
 def test_a_broken_link_is_found(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
     page.write_text("# Here\n[a](#here) [b](#there) [c](gone.md) [d](https://example.org/x) `[e](code.md)`\n")

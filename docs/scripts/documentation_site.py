@@ -1,24 +1,32 @@
-"""Show the examples in the site, each with its picture and as a notebook: a hook of mkdocs, named in mkdocs.yml.
+"""The documentation as a site: `python docs/scripts/documentation_site.py site` (`make docs`), with the extra `docs`.
 
-Nothing is run: the pictures are those of docs/figures/examples.
+Zensical reads a copy of docs/, in which every example has a page with its picture, and is there as a notebook. Nothing
+is run: the pictures are those of docs/figures/examples.
 """
 
 from __future__ import annotations
 
 import json
 import re
+import shutil
+import subprocess
+import sys
+import tempfile
 from base64 import b64encode
+from pathlib import Path
 
 from gallery import EXAMPLES, ROOT, question
-from mkdocs.config.defaults import MkDocsConfig
-from mkdocs.structure.files import File, Files, InclusionLevel
-from mkdocs.structure.pages import Page
 
 LINK = re.compile(r"\]\((?:\.\./)+examples/(\w+)\.py\)")
 
 
-def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Add a page and a notebook for every example."""
+def lay_out(docs: Path) -> None:
+    """Copy docs/ to a folder, add a page and a notebook for every example, and lead links to an example there."""
+    shutil.copytree(ROOT / "docs", docs)
+    for page in docs.rglob("*.md"):
+        up = "../" * (len(page.relative_to(docs).parts) - 1)
+        page.write_text(LINK.sub(rf"]({up}examples/\1.md)", page.read_text(encoding="utf-8")), encoding="utf-8")
+    (docs / "examples").mkdir()
     for path in EXAMPLES:
         source = path.read_text(encoding="utf-8")
         asked, said = question(path)
@@ -26,10 +34,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
             f"# {asked}\n\n{said} [As a notebook]({path.stem}.ipynb).\n\n```python\n{source}```\n\n"
             f"![{asked}](../figures/examples/{path.stem}.png)\n"
         )
-        place, apart = f"examples/{path.stem}", InclusionLevel.NOT_IN_NAV  # the gallery leads to them
-        files.append(File.generated(config, f"{place}.md", content=text, inclusion=apart))
-        files.append(File.generated(config, f"{place}.ipynb", content=notebook(path.stem, source)))
-    return files
+        (docs / "examples" / f"{path.stem}.md").write_text(text, encoding="utf-8")
+        (docs / "examples" / f"{path.stem}.ipynb").write_text(notebook(path.stem, source), encoding="utf-8")
 
 
 def notebook(name: str, source: str) -> str:
@@ -47,7 +53,10 @@ def notebook(name: str, source: str) -> str:
     return json.dumps({"cells": cells, "metadata": kernel, "nbformat": 4, "nbformat_minor": 5}, indent=1)
 
 
-def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:  # noqa: ARG001
-    """Lead links to an example's file to its page."""
-    up = "../" * page.file.src_uri.count("/")
-    return LINK.sub(rf"]({up}examples/\1.md)", markdown)
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as name:
+        place = Path(name)
+        lay_out(place / "docs")
+        shutil.copy(ROOT / "mkdocs.yml", place)
+        subprocess.run([sys.executable, "-m", "zensical", "build", "--strict"], cwd=place, check=True)
+        shutil.copytree(place / "site", sys.argv[1])
