@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import logging
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -42,6 +43,7 @@ Source = tuple[Path, int | None]
 """File of a recording, and its row in a Parquet file with one record per row."""
 OWN_COLUMN = "accel_{}_m_s2"
 """How siggen calls a channel in files whose columns cannot say what they hold, such as CSV."""
+_IS_OWN = re.compile(OWN_COLUMN.format("(.+)"))  # accel_m_s2 names no channel
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,16 +217,15 @@ def channel_columns(taken: TakenRecording) -> dict[str, str]:
     """
     if taken.found.own:
         return dict(taken.found.own)
-    prefix, suffix = OWN_COLUMN.split("{}")
     names = [column.name for column in taken.of_role(ColumnUse.VIBRATION)]
-    own = [name for name in names if name.startswith(prefix) and name.endswith(suffix)]
+    own = {found[1]: name for name in names if (found := _IS_OWN.fullmatch(name))}
     if not 1 <= len(own or names) <= MOST_CHANNELS:
         raise UsageError(
             f"{taken.path}: {len(own or names)} columns that could be vibration; allowed: 1 to {MOST_CHANNELS}. Name "
             f"those that you mean: {in_rig('channels: {NAME: COLUMN}')}"
         )
     if own:
-        return {name.removeprefix(prefix).removesuffix(suffix): name for name in own}
+        return own
     plain = [unit_of_name(name)[0] for name in names]
     return dict(zip(plain if len(set(plain)) == len(plain) else names, names, strict=True))
 

@@ -48,6 +48,15 @@ def test_the_rate_comes_from_the_times_however_they_are_rounded(
     assert found.fs_hz == (FS_HZ if digits > 5 or scale > 1.0 else pytest.approx(FS_HZ, rel=1e-4))
 
 
+@pytest.mark.parametrize(("column", "channel"), [("accel_m_s2", "accel"), ("accel_lid_m_s2", "lid")])
+def test_acceleration_in_m_s2_needs_no_rig_file(tmp_path: Path, column: str, channel: str) -> None:
+    file = write(tmp_path, [f"{at:.6f}" for at in TIMES_S], f"time_s;{column}")
+    assert channel_names(take(file, RecordingFacts(), say=False)) == (channel,)
+    found = read_recording(file, (channel,), RecordingFacts())
+    written = np.random.default_rng(0).standard_normal(SAMPLES)
+    np.testing.assert_allclose(found.channels[channel], written, atol=1e-5)
+
+
 def test_a_counter_of_samples_is_no_channel_and_states_no_rate(tmp_path: Path) -> None:
     file = write(tmp_path, [str(k) for k in range(SAMPLES)], "sample;lid")
     assert channel_names(take(file, RecordingFacts(), say=False)) == ("lid",)
