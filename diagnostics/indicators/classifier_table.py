@@ -22,7 +22,7 @@ from diagnostics.indicators.settings import IndicatorSettings
 from diagnostics.indicators.table import RecordTable, record_table, revolution_columns
 from diagnostics.records.gear_train import MeshNames
 from diagnostics.records.record_classes import STATE, RecordClasses, check_dataset, record_classes, set_classes
-from diagnostics.records.state_classes import CLASS
+from diagnostics.records.state_classes import CLASS, SHAM
 from diagnostics.records.usable_records import RecordCheck, first_lines, problem_lines
 from siggen.dataset.reading import Dataset
 from siggen.errors import DatasetError, UsageError
@@ -36,6 +36,7 @@ LABELS_KEY, OTHERS_KEY, GEARS_KEY = b"diagnostics.labels", b"diagnostics.others"
 LIFE_LABELS = {"age_h": Role.CONDITION, "rul_h": Role.TARGET}
 """Age and remaining life of an inspection [h]."""
 WRITERS = (".parquet", ".csv")
+KINDS = ("through_face", SHAM)
 
 
 def table(dataset: Dataset, *, indicators: Sequence[str] = (), workers: int = 1, classes: str = STATE) -> FeatureMatrix:
@@ -76,12 +77,22 @@ def table(dataset: Dataset, *, indicators: Sequence[str] = (), workers: int = 1,
     notes = check_table(found, dataset)
     for note in notes:
         warnings.warn(f"{dataset.path}: {note}", stacklevel=2)
-    roles, own = {name: dataset.role(name) for name in found.label_names}, classifier_table(found, notes)
+    own = classifier_table(found, notes)
+    matrix = with_kinds(_arrays(own) if lives else feature_matrix(own, told), dataset).defined()
+    roles = {name: dataset.role(name) for name in matrix.labels}
     if not lives:
-        return replace(feature_matrix(own, told), label_roles={**roles, CLASS: Role.TARGET}).defined()
-    matrix = _arrays(own).defined()
+        return replace(matrix, label_roles={**roles, CLASS: Role.TARGET})
     labels = {**matrix.labels, **_life_labels(dataset, matrix.labels)}
     return replace(matrix, labels=labels, label_roles={**roles, **LIFE_LABELS})
+
+
+def with_kinds(matrix: FeatureMatrix, dataset: Dataset) -> FeatureMatrix:
+    """Return the matrix with the labels that set damage through the face and shams apart, where the set has them."""
+    present = [name for name in KINDS if name in dataset.labels().column_names]
+    by_record = {row["record_id"]: row for row in dataset.labels(columns=["record_id", *present]).to_pylist()}
+    rows = [by_record[record] for record in matrix.labels["record_id"].tolist()]
+    more = {name: np.array([bool(row[name]) for row in rows]) for name in present}
+    return replace(matrix, labels={**matrix.labels, **more})
 
 
 def _life_labels(dataset: Dataset, labels: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:

@@ -18,7 +18,7 @@ from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.single_thread import single_thread
 from diagnostics.explore.look import Look
 from diagnostics.explore.set_page import LIMIT, LookOptions, set_look
-from diagnostics.indicators.classifier_table import feature_matrix, table_settings, write_table
+from diagnostics.indicators.classifier_table import feature_matrix, table_settings, with_kinds, write_table
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.own_indicator import OwnIndicator
 from diagnostics.indicators.ranking_table import IndicatorTable, ranking_table
@@ -35,7 +35,7 @@ from diagnostics.prediction.released_model import written_model
 from diagnostics.prediction.saved_models import save_models
 from diagnostics.records.channel_quantities import channel_quantities
 from diagnostics.records.record_classes import set_classes
-from diagnostics.records.state_classes import SHAM, ordered_states
+from diagnostics.records.state_classes import ordered_states
 from diagnostics.report.answer import ANSWERS, answer_figure, answer_sentences, first_figure
 from diagnostics.report.audit_words import audit_beside, audit_sentence
 from diagnostics.report.drawing import draw, example_set, reported_gearboxes
@@ -51,8 +51,6 @@ from siggen.file_writing import write_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-KINDS = ("through_face", SHAM)
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,15 +217,6 @@ def _scored(dataset: Dataset, page: PageOptions, models: Path | None, options: N
     if page.predictions is None:
         return None
     return score(dataset, page.predictions, baselines=models, classes=options.classes)
-
-
-def with_kinds(matrix: FeatureMatrix, dataset: Dataset) -> FeatureMatrix:
-    """Return the matrix with the labels that set damage through the face and shams apart, where the set has them."""
-    present = [name for name in KINDS if name in dataset.labels().column_names]
-    by_record = {row["record_id"]: row for row in dataset.labels(columns=["record_id", *present]).to_pylist()}
-    rows = [by_record[record] for record in matrix.labels["record_id"].tolist()]
-    more = {name: np.array([bool(row[name]) for row in rows]) for name in present}
-    return replace(matrix, labels={**matrix.labels, **more})
 
 
 def _write_pictures(folder: Path, figures: dict[str, tuple[Figure, str]]) -> dict[str, tuple[bytes, str]]:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
+import pyarrow as pa
 import pytest
 from sklearn.cluster import KMeans
 from sklearn.ensemble import RandomForestClassifier
 from sklearn.svm import LinearSVC
 
+import diagnostics
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.judging.alarms import BOOSTED, CHOSEN, CLASSIFIER, DESIGN, INDICATOR, evaluate, judged_detectors
 from diagnostics.judging.evaluation import Entry, chosen_scores, distance, inner_scores
@@ -166,6 +168,21 @@ def test_a_way_that_is_strong_only_where_it_is_judged_is_not_chosen_there() -> N
     for row, name in enumerate(names):
         healthy = outer[name][(fold != row) & ~damaged]
         assert np.array_equal(score[fold == row], distance(outer[name][fold == row], healthy))
+
+
+def test_what_tells_a_sham_is_shown_to_have_found_a_leak(
+    dataset: Any, measured: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("diagnostics.indicators.classifier_table.record_table", lambda *_, **__: measured)
+    state, specimen = (np.array(dataset.table[name].to_pylist()) for name in ("state", "specimen_id"))
+    sham = (state == "healthy") & (specimen % 2 == 1)
+    table = diagnostics.table(replace(dataset, table=dataset.table.append_column("sham", pa.array(sham))))
+    assert table.roles["sham"] == "target"
+    assert "sham" not in diagnostics.table(dataset).labels
+    changed = table.labels["sham"] | (table.labels["fault"] != "healthy")
+    leaking = evaluate(LinearSVC(), replace(table, values=changed[:, None].astype(float), names=("changed",)))
+    assert "sham: AUC 1.000" in str(leaking)
+    assert leaking.told == ()  # what is found no better than a sham is not told
 
 
 def test_any_classifier_is_judged_as_those_of_a_report_are() -> None:
