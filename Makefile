@@ -7,7 +7,7 @@ DEMO := runs/quickstart
 # TARGETS only exists after an install that was complete; a change of the pins installs again.
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-slow test-lowest lint bench pages reference docs wheel draft container locks clean
+.PHONY: demo test test-slow test-lowest lint bench pages reference docs wheel draft container locks holes clean
 
 $(STAMP): pyproject.toml constraints.txt
 	@echo "installing into $(VENV), once: about 2 minutes, and the download; 2 GB with the CPU build of PyTorch, more with the CUDA build"
@@ -86,5 +86,12 @@ locks: $(STAMP)
 	$(VENV)/locks/bin/uv pip $(LOCK) --all-extras --output-file locks/all.txt
 	$(VENV)/locks/bin/uv pip $(LOWEST) --output-file locks/lowest.txt
 
+# Known holes of all locked and of the lowest versions, asked of the public package index: needs the network.
+holes:
+	$(PYTHON) -m venv $(VENV)-holes
+	$(VENV)-holes/bin/python -m pip install -q pip-audit
+	$(VENV)-holes/bin/pip-audit --strict --no-deps --disable-pip --requirement locks/all.txt
+	$(VENV)-holes/bin/pip-audit --strict --no-deps --disable-pip --requirement locks/lowest.txt
+
 clean:
-	rm -rf $(VENV) $(VENV)-lowest runs build dist site
+	rm -rf $(VENV) $(VENV)-lowest $(VENV)-holes runs build dist site
