@@ -53,8 +53,8 @@ def digit_columns(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
         is_single = values.astype(np.float32).astype(np.float64) == values
     few = np.array([_digits(value) < FEW_DIGITS for value in values.tolist()])
     written = np.isfinite(values) & (values != 0.0)
-    found = {f"few digits of {name}": few & written, f"single precision of {name}": is_single & written}
-    return _varied(found) | zero_signs(name, values)
+    flags = {f"few digits of {name}": few & written, f"single precision of {name}": is_single & written}
+    return _varied(flags) | zero_signs(name, values)
 
 
 def residue_columns(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
@@ -104,34 +104,36 @@ def text_columns(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
     texts = [str(value) for value in values.tolist()]
     if len(set(texts)) < 2:
         return {}
-    found = {f"length of {name}": np.array([len(text) for text in texts], dtype=np.float64)}
+    columns = {f"length of {name}": np.array([len(text) for text in texts], dtype=np.float64)}
     for length in range(1, LONGEST_BEGINNING + 1):
         starts = [text[:length] for text in texts]
         for start, _ in Counter(starts).most_common(MOST_BEGINNINGS):
-            found[f"{name} begins with {start!r}"] = np.array([own == start for own in starts], dtype=np.float64)
-    found |= _date_columns(name, texts)
+            columns[f"{name} begins with {start!r}"] = np.array(
+                [beginning == start for beginning in starts], dtype=np.float64
+            )
+    columns |= _date_columns(name, texts)
     if values.dtype.kind == "U":
-        found |= _character_columns(name, texts)
-    return {column: numbers for column, numbers in found.items() if np.ptp(numbers[np.isfinite(numbers)]) > 0.0}
+        columns |= _character_columns(name, texts)
+    return {column: numbers for column, numbers in columns.items() if np.ptp(numbers[np.isfinite(numbers)]) > 0.0}
 
 
 def _character_columns(name: str, texts: list[str]) -> dict[str, np.ndarray]:
     """Return which characters stand at each place, from both ends, how many are of a kind, and residues of numbers."""
-    found = {}
+    columns = {}
     for end, turned in (("", texts), (" from the end", [text[::-1] for text in texts])):
         for place in range(min(max(map(len, texts)), LONGEST_TEXT)):
-            own = [text[place : place + 1] for text in turned]
-            for character, _ in Counter(own).most_common(MOST_CHARACTERS):
+            characters = [text[place : place + 1] for text in turned]
+            for character, _ in Counter(characters).most_common(MOST_CHARACTERS):
                 column = f"character {place + 1}{end} of {name} is {character!r}"
-                found[column] = np.array([one == character for one in own], dtype=np.float64)
+                columns[column] = np.array([part == character for part in characters], dtype=np.float64)
     kinds = {"digits": str.isdigit, "capitals": str.isupper, "small letters": str.islower, "spaces": str.isspace}
     for kind, is_kind in kinds.items():
-        found[f"{kind} in {name}"] = np.array([sum(map(is_kind, text)) for text in texts], dtype=np.float64)
+        columns[f"{kind} in {name}"] = np.array([sum(map(is_kind, text)) for text in texts], dtype=np.float64)
     last = [re.findall(r"\d+", text)[-1:] for text in texts]
     if all(last):
-        numbers = np.array([int(one[0][-DIGITS_KEPT:]) for one in last])
-        found |= residue_columns(f"the last number of {name}", numbers)
-    return found
+        numbers = np.array([int(part[0][-DIGITS_KEPT:]) for part in last])
+        columns |= residue_columns(f"the last number of {name}", numbers)
+    return columns
 
 
 def _date_columns(name: str, texts: list[str]) -> dict[str, np.ndarray]:
@@ -140,11 +142,11 @@ def _date_columns(name: str, texts: list[str]) -> dict[str, np.ndarray]:
     if not any(dates):
         return {}
     start = datetime(1970, 1, 1)
-    found = {
+    parts = {
         f"{part} of {name}": _as_numbers([getattr(date, part) if date else None for date in dates])
         for part in DATE_PARTS
     }
-    return found | {
+    return parts | {
         f"day of the week of {name}": _as_numbers([date.weekday() if date else None for date in dates]),
         f"time of {name}": _as_numbers([(date - start).total_seconds() if date else None for date in dates]),
     }
@@ -176,13 +178,13 @@ def noise_excess(measured: MeasuredSet, reference: np.ndarray, names: tuple[str,
     names : tuple of str
         Bands, of `NOISE_LEVELS`.
     """
-    known, found = (reference >= 0)[:, None], {}
+    known, excess = (reference >= 0)[:, None], {}
     lines = line_levels(measured)
     for name in names:
         rose = measured.values[name] - measured.values[name][reference]
-        by_lines = np.max([own - own[reference] for own in lines[name]], axis=0, initial=0.0)
-        found[name] = np.where(known, np.maximum(rose - by_lines, 0.0) + np.minimum(rose, 0.0), np.nan)
-    return found
+        by_lines = np.max([levels - levels[reference] for levels in lines[name]], axis=0, initial=0.0)
+        excess[name] = np.where(known, np.maximum(rose - by_lines, 0.0) + np.minimum(rose, 0.0), np.nan)
+    return excess
 
 
 def line_levels(measured: MeasuredSet) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -196,11 +198,11 @@ def line_levels(measured: MeasuredSet) -> dict[str, tuple[np.ndarray, np.ndarray
     hz = order * speed[:, None]
     highest = HIGHEST_NOISE_SHARE * measured.raw.fs_hz
     edges = np.geomspace(LOWEST_NOISE_HZ, highest, NOISE_BANDS + 1)
-    found = {}
+    levels = {}
     for name, low, high in zip(NOISE_LEVELS, edges[:-1], edges[1:], strict=True):
         inside = (hz >= low) & (hz < high)
-        found[name] = (_decibels(power, inside & is_mesh), _decibels(power, inside & ~is_mesh))
-    return found
+        levels[name] = (_decibels(power, inside & is_mesh), _decibels(power, inside & ~is_mesh))
+    return levels
 
 
 def _decibels(power: np.ndarray, kept: np.ndarray) -> np.ndarray:
@@ -264,31 +266,31 @@ def channel_lags(measured: MeasuredSet, reference: np.ndarray) -> tuple[np.ndarr
     """Return lag and likeness of every channel beside the record's reference, (records, channels) each."""
     lines, teeth = line_array(measured.waveforms), measured.teeth
     per_turn = measured.raw.fs_hz / measured.values["pulses_per_s"][:, 0]
-    found = np.full((2, *lines.shape[:2]), np.nan)
+    lags = np.full((2, *lines.shape[:2]), np.nan)
     for row in np.flatnonzero((reference >= 0) & np.isfinite(per_turn)).tolist():
-        found[:, row] = sample_lags(lines[row], lines[reference[row]], int(teeth[row]), float(per_turn[row]))
-    return found[0], found[1]
+        lags[:, row] = sample_lags(lines[row], lines[reference[row]], int(teeth[row]), float(per_turn[row]))
+    return lags[0], lags[1]
 
 
 def lag_columns(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.ndarray]:
     """Return lags and likeness in steps that count, by name, (records,) each."""
     lags, likeness = channel_lags(measured, reference)
     channels = measured.channels
-    found = {"lag to the tacho": TACHO_STEP * np.round(np.median(lags, axis=1) / TACHO_STEP)}
+    columns = {"lag to the tacho": TACHO_STEP * np.round(np.median(lags, axis=1) / TACHO_STEP)}
     for first in range(len(channels)):
         name = f"likeness of {channels[first]} to its own healthy record"
-        found[name] = LIKENESS_STEP * np.round(likeness[:, first] / LIKENESS_STEP)
+        columns[name] = LIKENESS_STEP * np.round(likeness[:, first] / LIKENESS_STEP)
         for second in range(first + 1, len(channels)):
             apart = np.round(lags[:, first] - lags[:, second])
-            found[f"lag of {channels[first]} to {channels[second]}"] = apart
-    return found
+            columns[f"lag of {channels[first]} to {channels[second]}"] = apart
+    return columns
 
 
 def fine_lags(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.ndarray]:
     """Return lags to the tacho and to the first channel without steps, by name, (records,) each [samples]."""
     lags, _ = channel_lags(measured, reference)
-    found = {"lag to the tacho": np.median(lags, axis=1)}
-    return found | {
+    columns = {"lag to the tacho": np.median(lags, axis=1)}
+    return columns | {
         f"lag of {channel} to {measured.channels[0]}": lags[:, k] - lags[:, 0]
         for k, channel in enumerate(measured.channels)
         if k
@@ -331,20 +333,20 @@ def condition_changes(measured: MeasuredSet, reference: np.ndarray) -> dict[str,
     Of noise what exceeds the lines. Layers with one law for all gearboxes are not compared, nor is the order in the
     files: within a gearbox the records of a set stand in the order of its states by design.
     """
-    known, found = (reference >= 0)[:, None], {}
+    known, changes = (reference >= 0)[:, None], {}
     for layer, (values, names) in condition_layers(measured).items():
         if layer not in {ORDER, *OF_NO_GEARBOX} and values.shape[1]:
             filled = filled_columns(values)
-            found[layer] = np.where(known, filled - filled[reference], np.nan), names
+            changes[layer] = np.where(known, filled - filled[reference], np.nan), names
     excess = noise_excess(measured, reference, steady_noise(measured))
     for layer, columns in (
         (NOISE, {name: _mean(values) for name, values in excess.items()}),
         (CHANNELS, _between_channels(excess, measured.channels)),
     ):
-        if layer in found:
+        if layer in changes:
             values, names = _stacked(columns)
-            found[layer] = np.where(known, filled_columns(values), np.nan), names
-    return found
+            changes[layer] = np.where(known, filled_columns(values), np.nan), names
+    return changes
 
 
 def steady_noise(measured: MeasuredSet) -> tuple[str, ...]:
@@ -355,67 +357,67 @@ def steady_noise(measured: MeasuredSet) -> tuple[str, ...]:
 def _order(measured: MeasuredSet) -> dict[str, np.ndarray]:
     """Return the place of every record among all, and among those of its split, as shares."""
     every = np.arange(len(measured.healthy))
-    found = {"place in the files": every / max(every.size, 1)}
+    places = {"place in the files": every / max(every.size, 1)}
     if "split" in measured.labels:
         of_split = np.zeros(every.size)
         for split in dict.fromkeys(measured.labels["split"].tolist()):
             rows = np.flatnonzero(measured.labels["split"] == split)
             of_split[rows] = np.arange(rows.size) / rows.size
-        found["place in the files of its split"] = of_split
-    return found
+        places["place in the files of its split"] = of_split
+    return places
 
 
 def _bytes(measured: MeasuredSet) -> dict[str, np.ndarray]:
     """Return means over the channels; the step of each channel besides, which no clipping moves."""
     held = {name: measured.values[name] for name in BYTES if name in measured.values}
-    found = {name: _mean(values) for name, values in held.items()}
+    means = {name: _mean(values) for name, values in held.items()}
     if (step := held.get(BYTES[0])) is not None and len(measured.channels) > 1:
-        found |= {f"{BYTES[0]} of {channel}": step[:, k] for k, channel in enumerate(measured.channels)}
-    return found
+        means |= {f"{BYTES[0]} of {channel}": step[:, k] for k, channel in enumerate(measured.channels)}
+    return means
 
 
 def _between_channels(noise: dict[str, np.ndarray], channels: tuple[str, ...]) -> dict[str, np.ndarray]:
     """Return the noise of every channel less the mean over those that are defined."""
-    found: dict[str, np.ndarray] = {}
+    differences: dict[str, np.ndarray] = {}
     for name, values in noise.items():
         mean = mean_of_defined(values, axis=1)
-        found |= {f"{name} of {channel}": values[:, k] - mean for k, channel in enumerate(channels)}
-    return found if len(channels) > 1 else {}
+        differences |= {f"{name} of {channel}": values[:, k] - mean for k, channel in enumerate(channels)}
+    return differences if len(channels) > 1 else {}
 
 
 def _texts(measured: MeasuredSet) -> dict[str, np.ndarray]:
-    found: dict[str, np.ndarray] = {}
+    columns: dict[str, np.ndarray] = {}
     for name, values in measured.labels.items():
         if values.ndim == 1 and values.dtype.kind not in "biuf" and must_not_tell(measured.roles, name):
-            found |= text_columns(name, values)
+            columns |= text_columns(name, values)
         if values.ndim == 1 and values.dtype.kind in "iu" and must_not_tell(measured.roles, name):
-            found |= residue_columns(name, values)
+            columns |= residue_columns(name, values)
         if values.ndim == 1 and values.dtype.kind == "f" and must_not_tell(measured.roles, name):
-            found |= digit_columns(name, values)
+            columns |= digit_columns(name, values)
         if values.ndim == 1 and values.dtype.kind == "f" and measured.roles.get(name) == Role.MEASURED:
-            found |= zero_signs(name, values)  # damage moves a measured number, but not how zero is written
-    return found
+            columns |= zero_signs(name, values)  # damage moves a measured number, but not how zero is written
+    return columns
 
 
 def _metadata(measured: MeasuredSet) -> dict[str, np.ndarray]:
-    found = {
+    numbers = {
         name: values.astype(np.float64)
         for name, values in measured.labels.items()
         if values.ndim == 1 and values.dtype.kind in "biuf" and must_not_tell(measured.roles, name)
     }
     pulses = {name: measured.values[name][:, 0] for name in (*PULSES, "samples") if name in measured.values}
-    return found | pulses | _beside_labels(measured.labels, pulses)
+    return numbers | pulses | _beside_labels(measured.labels, pulses)
 
 
 def _beside_labels(labels: dict[str, np.ndarray], pulses: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Return what the pulses give less what labels say, where a set has both."""
-    found = {}
+    distances = {}
     if "speed_hz" in labels and "pulses_per_s" in pulses:
-        found["speed of the pulses over its label"] = pulses["pulses_per_s"] / labels["speed_hz"] - 1.0
+        distances["speed of the pulses over its label"] = pulses["pulses_per_s"] / labels["speed_hz"] - 1.0
     if "start_angle_rad" in labels and "start_turn" in pulses:
         apart = pulses["start_turn"] - labels["start_angle_rad"] / (2.0 * np.pi)
-        found["distance of the start by the pulses from its label"] = np.abs((apart + 0.5) % 1.0 - 0.5)
-    return found
+        distances["distance of the start by the pulses from its label"] = np.abs((apart + 0.5) % 1.0 - 0.5)
+    return distances
 
 
 def filled_columns(values: np.ndarray) -> np.ndarray:

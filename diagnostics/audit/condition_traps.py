@@ -83,9 +83,9 @@ def sized_states(measured: MeasuredSet) -> list[tuple[str, tuple[str, ...]]]:
 
     These ascend. Kinds without a larger state are left out.
     """
-    labels, found = measured.labels, list[tuple[str, tuple[str, ...]]]()
+    labels, pairs = measured.labels, list[tuple[str, tuple[str, ...]]]()
     if "damaged_area_mm2" not in labels:
-        return found
+        return pairs
     for fault in dict.fromkeys(labels["fault"][~measured.healthy].tolist()):
         rows = np.flatnonzero(labels["fault"] == fault)
         states = labels["state"][rows]
@@ -96,36 +96,38 @@ def sized_states(measured: MeasuredSet) -> list[tuple[str, tuple[str, ...]]]:
         smallest = min(area, key=lambda state: area[state])
         larger = [state for state, mean in area.items() if mean >= LARGER * area[smallest] > 0.0]
         if larger:
-            found.append((smallest, tuple(sorted(larger, key=lambda state: area[state]))))
-    return found
+            pairs.append((smallest, tuple(sorted(larger, key=lambda state: area[state]))))
+    return pairs
 
 
 def small_damage_detectors(measured: MeasuredSet, reference: np.ndarray) -> list[Entry]:
     """Return detectors for every smallest state, on changes from the reference (records,); -1 without one."""
     movable = _known(movable_changes(measured, reference), reference)
     floors = _known(shape_changes(measured.raw.floors, reference), reference)
-    found = []
+    detectors = []
     for smallest, larger in sized_states(measured):
         if movable:
-            found.append(_detector(measured, f"change of {LEVELS}", smallest, larger, movable))
+            detectors.append(_detector(measured, f"change of {LEVELS}", smallest, larger, movable))
         if floors:
-            found.append(_detector(measured, "change of the floor", smallest, larger[:1], floors))
-    return found
+            detectors.append(_detector(measured, "change of the floor", smallest, larger[:1], floors))
+    return detectors
 
 
 def _known(columns: dict[str, np.ndarray], reference: np.ndarray) -> dict[str, np.ndarray]:
     """Return the columns that all records with a reference have, undefined in the others (-1)."""
     known = reference >= 0
-    return {name: np.where(known, own, np.nan) for name, own in columns.items() if np.isfinite(own[known]).all()}
+    return {
+        name: np.where(known, values, np.nan) for name, values in columns.items() if np.isfinite(values[known]).all()
+    }
 
 
 def movable_changes(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.ndarray]:
     """Return what damage can move, as changes from the reference, (records,) each, by name."""
-    found = {f"change of the {name}": values - values[reference] for name, values in measured.raw.levels.items()}
+    changes = {f"change of the {name}": values - values[reference] for name, values in measured.raw.levels.items()}
     for name in (name for name in NOISE_LEVELS if name in measured.values):
         change = measured.values[name] - measured.values[name][reference]
-        found |= {f"change of the {name} of {channel}": change[:, k] for k, channel in enumerate(measured.channels)}
-    return found | _mesh_changes(measured, reference) | fine_lags(measured, reference)
+        changes |= {f"change of the {name} of {channel}": change[:, k] for k, channel in enumerate(measured.channels)}
+    return changes | _mesh_changes(measured, reference) | fine_lags(measured, reference)
 
 
 def _mesh_changes(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.ndarray]:
@@ -140,13 +142,15 @@ def _mesh_changes(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.
     )
     change = level - level[reference]
     middle = np.median(change, axis=2)
-    found: dict[str, np.ndarray] = {}
+    changes: dict[str, np.ndarray] = {}
     for k, channel in enumerate(measured.channels):
-        found |= {f"change of mesh line {h + 1} of {channel}": change[:, k, h] for h in range(most)}
-        found[f"median change of the mesh lines of {channel}"] = middle[:, k]
+        changes |= {f"change of mesh line {h + 1} of {channel}": change[:, k, h] for h in range(most)}
+        changes[f"median change of the mesh lines of {channel}"] = middle[:, k]
         if k:
-            found[f"the same of {channel} less {measured.channels[0]}"] = np.median(change[:, k] - change[:, 0], axis=1)
-    return found
+            changes[f"the same of {channel} less {measured.channels[0]}"] = np.median(
+                change[:, k] - change[:, 0], axis=1
+            )
+    return changes
 
 
 class _LikeLarger:
@@ -239,26 +243,26 @@ def condition_detectors(measured: MeasuredSet) -> dict[str, list[Entry]]:
     reference = reference_records(measured)
     has_reference = bool((reference >= 0).any())
     changes = condition_changes(measured, reference) if has_reference else {}
-    found: dict[str, list[Entry]] = {}
+    layers: dict[str, list[Entry]] = {}
     for layer, (values, names) in condition_layers(measured).items():
         if values.shape[1]:
             filled = filled_columns(values)
-            found[layer] = [best_column(layer, filled, names), all_columns(f"all of {layer}", filled)]
+            layers[layer] = [best_column(layer, filled, names), all_columns(f"all of {layer}", filled)]
     for layer, (change, names) in changes.items():
-        found[layer] += [
+        layers[layer] += [
             best_column(f"change of {layer}", change, names),
             all_columns(f"change of all of {layer}", change),
         ]
     if has_reference and not measured.gears[0].planetary:
         lags = lag_columns(measured, reference)
-        found[LAGS] = [best_column(f"change of {LAGS}", np.stack(list(lags.values()), axis=1), tuple(lags))]
+        layers[LAGS] = [best_column(f"change of {LAGS}", np.stack(list(lags.values()), axis=1), tuple(lags))]
     if has_reference:
-        found[LEVELS] = small_damage_detectors(measured, reference)
-    found[TEMPLATES] = template_detectors(measured.raw.templates)
+        layers[LEVELS] = small_damage_detectors(measured, reference)
+    layers[TEMPLATES] = template_detectors(measured.raw.templates)
     asked = measured.healthy | of_single_teeth(measured)
-    for layer in OF_TEETH & found.keys():
-        found[layer] = [replace(detector, usable=detector.usable & asked) for detector in found[layer]]
-    return {layer: detectors for layer, detectors in found.items() if detectors}
+    for layer in OF_TEETH & layers.keys():
+        layers[layer] = [replace(detector, usable=detector.usable & asked) for detector in layers[layer]]
+    return {layer: detectors for layer, detectors in layers.items() if detectors}
 
 
 def of_single_teeth(measured: MeasuredSet) -> np.ndarray:
@@ -290,7 +294,7 @@ def condition_traps(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
     """Return a finding for every layer whose strongest detector tells a state by more than chance explains."""
     bank = condition_detectors(measured)
     asked = [detector for detectors in bank.values() for detector in detectors]
-    turns, limits, found = PERMUTATIONS * len(damaged_states(measured)), dict[str, float](), []
+    turns, limits, findings = PERMUTATIONS * len(damaged_states(measured)), dict[str, float](), []
     for layer, detectors in bank.items():
         every = (
             (one, detection_by(measured, one, state, seed)) for state in damaged_states(measured) for one in detectors
@@ -303,8 +307,8 @@ def condition_traps(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
             maxima = permuted_maxima(measured, asked, entry.state, seed, turns)[0][1:]
             limits[entry.state] = float(np.max(maxima, where=np.isfinite(maxima), initial=0.0))
         if entry.auc.value > limits[entry.state]:
-            found.append(_finding(layer, strongest.name, entry, len(asked), limits[entry.state]))
-    return found
+            findings.append(_finding(layer, strongest.name, entry, len(asked), limits[entry.state]))
+    return findings
 
 
 def _finding(layer: str, name: str, entry: Detectability, tried: int, limit: float) -> Finding:

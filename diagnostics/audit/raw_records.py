@@ -79,20 +79,20 @@ def edge_ranks(signal: np.ndarray) -> dict[str, float]:
     ----------
     signal : (n,) float64
     """
-    found = {}
+    ranks = {}
     for edge, turned in (("first", signal), ("last", signal[::-1])):
         for size in (*EDGE_SAMPLES, signal.size // EDGE_PARTS):
             if size < EDGE_SAMPLES[0] or signal.size < EDGE_PARTS * size:
                 continue
             blocks = turned[: signal.size // size * size].reshape(-1, size)
-            found[f"level, {edge} {size} samples"] = rank_of_first(np.square(blocks).mean(axis=1))
+            ranks[f"level, {edge} {size} samples"] = rank_of_first(np.square(blocks).mean(axis=1))
             if size == SHAPED_SAMPLES:
-                found[f"mean, {edge} {size} samples"] = rank_of_first(blocks.mean(axis=1))
+                ranks[f"mean, {edge} {size} samples"] = rank_of_first(blocks.mean(axis=1))
                 half = np.square(blocks).reshape(len(blocks), 2, -1).mean(axis=2)
-                found[f"slope of the level, {edge} {size} samples"] = rank_of_first(
+                ranks[f"slope of the level, {edge} {size} samples"] = rank_of_first(
                     np.log((half[:, 1] + TINY) / (half[:, 0] + TINY))
                 )
-    return found
+    return ranks
 
 
 def offsets(signal: np.ndarray) -> dict[str, float]:
@@ -118,7 +118,7 @@ def course_numbers(signal: np.ndarray) -> dict[str, float]:
         return {}
     bins = 20.0 * np.log10(np.abs(fft.rfft(frames, axis=1))[:, 4:-4] + TINY)
     rough = level_course(np.diff(signal, 4)).astype(np.float64)[:, None]
-    found = {}
+    numbers = {}
     for what, course in (("level", bins), ("noise", rough)):
         time = (np.arange(len(course)) + 0.5) / len(course)
         parts = {"rise": 12.0 * (time - 0.5)}
@@ -128,8 +128,8 @@ def course_numbers(signal: np.ndarray) -> dict[str, float]:
                 f"sine {k}": 2.0 * np.sin(2 * np.pi * k * time),
             }
         for name, wave in parts.items():
-            found[f"{name} of the {what}"] = float(np.median(wave @ course) / time.size)
-    return found
+            numbers[f"{name} of the {what}"] = float(np.median(wave @ course) / time.size)
+    return numbers
 
 
 BLOCK_LENGTHS = (100, 128, 250, 256, 500, 512, 1000, 1024, 2000, 2048, 4096)
@@ -143,14 +143,14 @@ def block_edges(signal: np.ndarray) -> dict[str, float]:
     """
     bent = np.log(np.square(np.diff(signal, 4)) + TINY)  # bent[k] is of the samples around k + 2
     bent -= bent.mean()
-    spread, found = float(bent.std()) + TINY, {}
+    spread, roughness = float(bent.std()) + TINY, {}
     for length in BLOCK_LENGTHS:
         edges = np.arange(length, signal.size - 4, length) - 2
         if edges.size >= FEWEST_BLOCKS:
             for name, apart in (("last", -1), ("first", 0)):
                 rough = float(bent[edges + apart].mean() / spread * math.sqrt(edges.size))
-                found[f"{name} of every {length} samples"] = rough
-    return found
+                roughness[f"{name} of every {length} samples"] = rough
+    return roughness
 
 
 def rank_of_first(values: np.ndarray) -> float:
@@ -220,13 +220,13 @@ def near_orders(ratio: np.ndarray, spacing: float) -> np.ndarray:
     """
     bins = np.arange(ratio.size)
     apart = np.abs(bins - spacing * np.round(bins / spacing))
-    found = apart <= NEAR_ORDER_BINS
+    near = apart <= NEAR_ORDER_BINS
     for start in range(0, ratio.size, REGION):
         part = slice(start, start + REGION)
-        on, off = (ratio[part][side[part]] for side in (apart <= 1.0, ~found))
+        on, off = (ratio[part][side[part]] for side in (apart <= 1.0, ~near))
         if on.size and off.size and np.median(on) <= STANDING * np.median(off):
-            found[part] = False
-    return found
+            near[part] = False
+    return near
 
 
 def line_columns(rows: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
@@ -237,7 +237,7 @@ def line_columns(rows: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
     rows : list of dict of str to (k,) float32
         By record and channel, as of `line_contrast`; records of another length are left undefined.
     """
-    found = {}
+    columns = {}
     for channel, first in rows[0].items():
         every = np.full((len(rows), first.size), np.nan, dtype=np.float32)
         for place, row in enumerate(rows):
@@ -247,8 +247,8 @@ def line_columns(rows: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
         chosen = [np.argsort(-rank, kind="stable")[:KEPT_LINES] for rank in (known.mean(axis=0), known.std(axis=0))]
         for k in dict.fromkeys(np.concatenate(chosen).tolist()):
             share = (k + 0.5) / first.size / 2.0
-            found[f"line of {channel} at {share:.4f} of the rate"] = every[:, k].astype(np.float64)
-    return found
+            columns[f"line of {channel} at {share:.4f} of the rate"] = every[:, k].astype(np.float64)
+    return columns
 
 
 LOW_HZ, HIGH_PARTS = 8.0, 32
@@ -270,17 +270,17 @@ def quiet_ends(channels: dict[str, np.ndarray], fs_hz: float) -> dict[str, float
     from scipy import fft
 
     spectra = {name: fft.rfft((x - x.mean()) * np.hanning(x.size))[1:-1] for name, x in channels.items()}
-    found = {}
+    numbers = {}
     for name, lines in spectra.items():
         low = lines[: int(LOW_HZ * channels[name].size / fs_hz)]
-        found[f"level below {LOW_HZ:g} Hz of {name}"] = _mean_level(low)
-        found[f"level of the highest bins of {name}"] = _mean_level(lines[-(lines.size // HIGH_PARTS) :])
+        numbers[f"level below {LOW_HZ:g} Hz of {name}"] = _mean_level(low)
+        numbers[f"level of the highest bins of {name}"] = _mean_level(lines[-(lines.size // HIGH_PARTS) :])
     for first, second in combinations(spectra, 2):
         for parts in SHARED_PARTS if spectra[first].size == spectra[second].size else ():
             kept = slice(-(spectra[first].size // parts), None)
             name = f"last 1/{parts} of the band that {first} and {second} share"
-            found[name] = _shared(spectra[first][kept], spectra[second][kept])
-    return found
+            numbers[name] = _shared(spectra[first][kept], spectra[second][kept])
+    return numbers
 
 
 def _mean_level(lines: np.ndarray) -> float:
@@ -294,9 +294,9 @@ def _shared(first: np.ndarray, second: np.ndarray) -> float:
     blocks = first.size // BLOCK
     if not blocks:
         return math.nan
-    own, other = (lines[-blocks * BLOCK :].reshape(blocks, BLOCK) for lines in (first, second))
-    product = (own * other.conj()).real.mean(axis=1)
-    size = np.sqrt(np.square(np.abs(own)).mean(axis=1) * np.square(np.abs(other)).mean(axis=1))
+    of_first, of_second = (lines[-blocks * BLOCK :].reshape(blocks, BLOCK) for lines in (first, second))
+    product = (of_first * of_second.conj()).real.mean(axis=1)
+    size = np.sqrt(np.square(np.abs(of_first)).mean(axis=1) * np.square(np.abs(of_second)).mean(axis=1))
     return float(np.mean(product / (size + TINY)))
 
 
@@ -404,13 +404,13 @@ def without_ends(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     columns : dict of str to (records,) float64
         As of `stored_numbers`, "... of channel".
     """
-    found = {name: values for name, values in columns.items() if not name.startswith(TOP)}
+    kept = {name: values for name, values in columns.items() if not name.startswith(TOP)}
     for name, tops in columns.items():
         if name.startswith(TOP):
             _, place, counts = np.unique(tops, return_inverse=True, return_counts=True)
-            own = f"samples as large as the largest{name.removeprefix(TOP)}"
-            found[own] = np.where(counts[place.ravel()] > 1, 1.0, found[own])
-    return found
+            largest = f"samples as large as the largest{name.removeprefix(TOP)}"
+            kept[largest] = np.where(counts[place.ravel()] > 1, 1.0, kept[largest])
+    return kept
 
 
 def sample_marks(signal: np.ndarray) -> set[int]:
@@ -422,15 +422,15 @@ def sample_marks(signal: np.ndarray) -> set[int]:
         As it is stored; taken as float32.
     """
     stored = np.ascontiguousarray(signal, dtype="<f4")
-    size, found = stored.size // MARKED_PARTS, set[int]()
+    size, marks = stored.size // MARKED_PARTS, set[int]()
     if size <= 2 * MARK_REACH:
-        return found
+        return marks
     tops = stored[: size * MARKED_PARTS].reshape(MARKED_PARTS, size).argmax(axis=1) + size * np.arange(MARKED_PARTS)
     for top in tops.tolist():
         run = stored[max(top - MARK_REACH, 0) : top + MARK_REACH + 1]
         if run.size == 2 * MARK_REACH + 1 and np.unique(run).size >= FEWEST_VALUES:
-            found.add(int.from_bytes(hashlib.blake2b(run.tobytes(), digest_size=8).digest(), "little"))
-    return found
+            marks.add(int.from_bytes(hashlib.blake2b(run.tobytes(), digest_size=8).digest(), "little"))
+    return marks
 
 
 TEMPLATES = "templates"
@@ -507,17 +507,17 @@ def template_products(codes: Mapping[str, list[np.ndarray]], courses: list[np.nd
         By what they are of. Zero is put for records that are shorter than the longest.
     courses : (records) of (channels * 64,) float32
     """
-    found = {}
-    for what, own in codes.items():
-        size = max(row.shape[1] for row in own)
-        rows = np.flatnonzero([row.shape[1] == size for row in own])
+    products = {}
+    for what, records in codes.items():
+        size = max(row.shape[1] for row in records)
+        rows = np.flatnonzero([row.shape[1] == size for row in records])
         for low, high in pairwise(round(edge * size) for edge in (BANDS if what == IN_PARTS else (0, 1))):
-            part = np.stack([own[row][:, low:high].ravel() for row in rows.tolist()]).astype(np.float32) / CODES
-            product = np.zeros((len(own), len(own)))
+            part = np.stack([records[row][:, low:high].ravel() for row in rows.tolist()]).astype(np.float32) / CODES
+            product = np.zeros((len(records), len(records)))
             product[np.ix_(rows, rows)] = part @ part.T / max(part.shape[1], 1)
-            found[f"{what}, lines {low} to {high}"] = product
+            products[f"{what}, lines {low} to {high}"] = product
     every = np.stack(courses).astype(np.float64)
-    return {**found, "courses of the level": every @ every.T}
+    return {**products, "courses of the level": every @ every.T}
 
 
 def phase_columns(orders: list[np.ndarray]) -> dict[str, np.ndarray]:
@@ -533,7 +533,7 @@ def phase_columns(orders: list[np.ndarray]) -> dict[str, np.ndarray]:
     for place, row in enumerate(orders):
         if row.shape[1] == size:
             every[place] = row
-    found, known = {}, every[np.isfinite(every).all(axis=(1, 2))]
+    columns, known = {}, every[np.isfinite(every).all(axis=(1, 2))]
     for channel in range(every.shape[1] // 2 if known.size else 0):
         parts = slice(2 * channel, 2 * channel + 2)
         common = np.square(known[:, parts].sum(axis=0)).sum(axis=0)
@@ -541,16 +541,22 @@ def phase_columns(orders: list[np.ndarray]) -> dict[str, np.ndarray]:
         for line in np.argsort(-common, kind="stable")[:KEPT_LINES].tolist():
             order = (line + 1) / TEMPLATE_TURNS
             for name, part in zip(("real", "imaginary"), every[:, parts, line].T, strict=True):
-                found[f"{name} part at order {order:.7g} of channel {channel + 1}"] = part
-    return found
+                columns[f"{name} part at order {order:.7g} of channel {channel + 1}"] = part
+    return columns
 
 
 def template_detectors(products: dict[str, np.ndarray]) -> list[Entry]:
     """Return the detectors on products of all pairs of records, (records, records) each, by what they are of."""
     return [
-        Entry(f"{TEMPLATES} of {what}", partial(GroupRidge, own), np.arange(len(own)), np.diagonal(own) > 0.0, len(own))
-        for what, own in products.items()
-        if own.any()
+        Entry(
+            f"{TEMPLATES} of {what}",
+            partial(GroupRidge, product),
+            np.arange(len(product)),
+            np.diagonal(product) > 0.0,
+            len(product),
+        )
+        for what, product in products.items()
+        if product.any()
     ]
 
 
@@ -622,30 +628,30 @@ class _RawRecord:
 
 def raw_columns(records: Iterable[Recording]) -> RawColumns:
     """Return the numbers of all records, in their order."""
-    found, fs_hz = [], math.nan
+    rows, fs_hz = [], math.nan
     for record in records:
-        found.append(_raw_record(record))
+        rows.append(_raw_record(record))
         fs_hz = record.fs_hz
-    if not found:
+    if not rows:
         return RawColumns()
-    layers = {layer: _columns([one.layers[layer] for one in found]) for layer in found[0].layers}
+    layers = {layer: _columns([row.layers[layer] for row in rows]) for layer in rows[0].layers}
     layers[STORED] = without_ends(layers[STORED])
-    layers[LINES] = line_columns([one.lines for one in found])
-    layers[PHASES] = phase_columns([one.orders for one in found])
-    channels = tuple(found[0].floors)
-    phases = {f"phases of {name}": phase_product([one.phases[name] for one in found]) for name in channels}
-    layers[LOCKED] = locked_columns([one.phases for one in found]) | component_columns(phases)
+    layers[LINES] = line_columns([row.lines for row in rows])
+    layers[PHASES] = phase_columns([row.orders for row in rows])
+    channels = tuple(rows[0].floors)
+    phases = {f"phases of {name}": phase_product([row.phases[name] for row in rows]) for name in channels}
+    layers[LOCKED] = locked_columns([row.phases for row in rows]) | component_columns(phases)
     layers[LOW_BITS] = component_columns(
-        {f"low bits of {name}": parity_product([one.low_bits[name] for one in found]) for name in channels}
+        {f"low bits of {name}": parity_product([row.low_bits[name] for row in rows]) for name in channels}
     )
-    layers[ECHOES] = echo_columns([one.echoes for one in found], fs_hz)
+    layers[ECHOES] = echo_columns([row.echoes for row in rows], fs_hz)
     codes = {
-        IN_PARTS: [one.codes for one in found],
-        "spectra from the first pulse": [one.from_pulse for one in found],
+        IN_PARTS: [row.codes for row in rows],
+        "spectra from the first pulse": [row.from_pulse for row in rows],
     }
-    templates = template_products(codes, [one.course for one in found])
-    floors = {name: np.stack([one.floors[name] for one in found]) for name in found[0].floors}
-    levels, marks = _columns([one.levels for one in found]), [one.marks for one in found]
+    templates = template_products(codes, [row.course for row in rows])
+    floors = {name: np.stack([row.floors[name] for row in rows]) for name in rows[0].floors}
+    levels, marks = _columns([row.levels for row in rows]), [row.marks for row in rows]
     return RawColumns(layers, levels, marks, fs_hz, templates, floors)
 
 
@@ -702,8 +708,8 @@ def raw_levels(signal: np.ndarray) -> dict[str, float]:
     from scipy import fft
 
     power = np.square(np.abs(fft.rfft(signal - signal.mean())))[1:-1]
-    found = {"rms": np.square(signal).mean(), "peak": np.square(signal).max()}
-    found |= {
+    powers = {"rms": np.square(signal).mean(), "peak": np.square(signal).max()}
+    powers |= {
         f"power in eighth {k + 1} of the band": part.sum() for k, part in enumerate(np.array_split(power, EIGHTHS))
     }
-    return {name: float(10.0 * np.log10(value + TINY)) for name, value in found.items()}
+    return {name: float(10.0 * np.log10(value + TINY)) for name, value in powers.items()}

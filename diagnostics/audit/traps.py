@@ -66,12 +66,12 @@ def slight_states(measured: MeasuredSet) -> tuple[str, ...]:
 
 def simple_thresholds(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
     """Return a finding for each of RMS and kurtosis that separates slight damage from healthy in some channel."""
-    found = []
+    findings = []
     for quantity in QUANTITIES:
         best = _best(measured, measured.values[quantity], seed)
         if best and best[0] > LARGEST_AUC:
-            found.append(_threshold_finding(quantity, *best))
-    return found or _change_of_level(measured, seed)
+            findings.append(_threshold_finding(quantity, *best))
+    return findings or _change_of_level(measured, seed)
 
 
 def _best(measured: MeasuredSet, values: np.ndarray, seed: int) -> tuple[float, str, str] | None:
@@ -196,18 +196,18 @@ def equal_waveforms(measured: MeasuredSet) -> Iterator[Finding]:
     chosen = healthy[first][:MOST_SPECIMENS]
     pairs = list(combinations(chosen.tolist(), 2))
     judged = [
-        (found, lines)
+        (alikeness, lines)
         for a, b in pairs
-        for found, lines in [likeness(_sidebands(measured, a), _sidebands(measured, b))]
+        for alikeness, lines in [likeness(_sidebands(measured, a), _sidebands(measured, b))]
         if lines >= FEWEST_LINES
     ]
-    alike = sum(found > max(LEAST_LIKENESS, chance_bound(lines, len(pairs))) for found, lines in judged)
+    alike = sum(alikeness > max(LEAST_LIKENESS, chance_bound(lines, len(pairs))) for alikeness, lines in judged)
     if not judged or alike / len(judged) <= ALIKE_ALLOWED:
         return
     yield Finding(
         "one_error_draw",
         f"{alike} of {len(judged)} pairs of healthy specimens have the same averaged waveform up to a rotation "
-        f"(mean likeness of sideband phases {np.mean([found for found, _ in judged]):.2f})",
+        f"(mean likeness of sideband phases {np.mean([alikeness for alikeness, _ in judged]):.2f})",
         f"a pair counts from likeness {LEAST_LIKENESS:g}, at most {ALIKE_ALLOWED:.0%} of the pairs are allowed",
         ERRORS_MEND,
     )
@@ -273,12 +273,12 @@ def tied_columns(measured: MeasuredSet, seed: int = 0) -> dict[str, list[Tie]]:
         return {}
     specimen = _codes(measured.labels["specimen_id"][kept])
     permuted = permuted_states(state, specimen, seed)
-    found: dict[str, list[Tie]] = {}
+    ties: dict[str, list[Tie]] = {}
     for name, values in _columns(measured).items():
         tie = strongest_tie(name, values[kept], state, specimen, permuted)
         if tie is not None and tie.is_found:
-            found.setdefault(_group(measured, name), []).append(tie)
-    return found
+            ties.setdefault(_group(measured, name), []).append(tie)
+    return ties
 
 
 def _columns(measured: MeasuredSet) -> dict[str, np.ndarray]:
@@ -464,10 +464,12 @@ def shared_specimens(measured: MeasuredSet) -> Iterator[Finding]:
 def solver_settings(measured: MeasuredSet) -> Iterator[Finding]:
     """Yield a finding if states of the configuration differ in settings that are not their damage."""
     states = [state for state in measured.config.get("states", {}).values() if isinstance(state, Mapping)]
-    own = [_settings(state) for state in states]
-    if len(own) < 2 or all(settings == own[0] for settings in own):
+    of_states = [_settings(state) for state in states]
+    if len(of_states) < 2 or all(settings == of_states[0] for settings in of_states):
         return
-    differing = sorted({key for settings in own for key in settings if any(s.get(key) != settings[key] for s in own)})
+    differing = sorted(
+        {key for settings in of_states for key in settings if any(s.get(key) != settings[key] for s in of_states)}
+    )
     yield Finding(
         "solver_settings_by_state",
         f"states differ in {', '.join(differing)}",
@@ -477,13 +479,13 @@ def solver_settings(measured: MeasuredSet) -> Iterator[Finding]:
 
 
 def _settings(section: Mapping[str, Any]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+    settings: dict[str, Any] = {}
     for key, value in section.items():
         if key in SETTINGS:
-            found[key] = value
+            settings[key] = value
         elif isinstance(value, Mapping):
-            found |= {f"{key}.{name}": inner for name, inner in _settings(value).items()}
-    return found
+            settings |= {f"{key}.{name}": inner for name, inner in _settings(value).items()}
+    return settings
 
 
 def damage_phase(measured: MeasuredSet) -> list[Finding]:
@@ -492,8 +494,10 @@ def damage_phase(measured: MeasuredSet) -> list[Finding]:
     if faulty is None:
         return []
     teeth = measured.teeth
-    damaged = np.array([len(found) > 0 for found in faulty])
-    tooth = np.array([found[0] / z if len(found) else 0.0 for found, z in zip(faulty, teeth, strict=True)])
+    damaged = np.array([len(tooth_places) > 0 for tooth_places in faulty])
+    tooth = np.array(
+        [tooth_places[0] / z if len(tooth_places) else 0.0 for tooth_places, z in zip(faulty, teeth, strict=True)]
+    )
     _, first = np.unique(measured.labels["specimen_id"][damaged], return_index=True)
     start = measured.values["start_turn"][:, 0][damaged]
     angles = {"tacho": tooth[damaged][first], "start": (start - tooth[damaged])[np.isfinite(start)]}
@@ -602,10 +606,10 @@ def shared_by_records(measured: MeasuredSet) -> Iterator[Finding]:
         if held.size < 2:
             continue
         judged = max(judged, held.size)
-        found = np.stack([measured.sketches[row][channel] for row in held])
-        for start in range(0, len(found), BLOCK):
-            block = found[start : start + BLOCK]
-            product = np.abs((block @ found[start:].conj().T).real) / found.shape[1]
+        sketches = np.stack([measured.sketches[row][channel] for row in held])
+        for start in range(0, len(sketches), BLOCK):
+            block = sketches[start : start + BLOCK]
+            product = np.abs((block @ sketches[start:].conj().T).real) / sketches.shape[1]
             above = np.triu(product, 1)
             first, second = np.nonzero(above > LARGEST_BETWEEN_RECORDS)
             shared[held[start + first]] = shared[held[start + second]] = True
@@ -629,8 +633,8 @@ def shared_by_channels(measured: MeasuredSet) -> Iterator[Finding]:
         for b in range(a + 1, len(measured.channels)):
             both = [(row[a], row[b]) for row in measured.sketches if row[a].size and row[a].size == row[b].size]
             if both:
-                found = float(np.median([abs(np.vdot(x, y).real) / x.size for x, y in both]))
-                worst, names = max((worst, names), (found, (measured.channels[a], measured.channels[b])))
+                shared = float(np.median([abs(np.vdot(x, y).real) / x.size for x, y in both]))
+                worst, names = max((worst, names), (shared, (measured.channels[a], measured.channels[b])))
     if worst <= LARGEST_BETWEEN_CHANNELS:
         return
     yield Finding(
@@ -655,7 +659,7 @@ def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]
 
     One finding hides no other: detectors on conditions, which name no cause, speak behind the others.
     """
-    found = [
+    findings = [
         *shared_specimens(measured),
         *healthy_sidebands(measured),
         *simple_thresholds(measured, seed),
@@ -666,7 +670,7 @@ def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]
         *damage_phase(measured),
         *condition_traps(measured, seed),
     ]
-    return sorted(found, key=lambda finding: finding.trap in MOVED_BY_MANY)
+    return sorted(findings, key=lambda finding: finding.trap in MOVED_BY_MANY)
 
 
 def verdict(findings: Sequence[Finding], specimens: int, chance: ChanceLimit | None = None, missing: str = "") -> str:

@@ -236,7 +236,7 @@ def _channel(
     rng = generator(draws.seed, Purpose.PATHS, 1 + number)
     directions = _directions(seen.lines, library, draws, rng)
     gains = path_gains(len(draws.blocks), len(blocks.blocks), rng)
-    found = tuple(
+    paths = tuple(
         PathDraw(gain * drawn_path(seen.lines, library.level_db(w, chosen), picked, grid_hz, blocks.fs_hz), w)
         for gain, w, chosen, picked in zip(gains, directions, draws.gearboxes, draws.blocks, strict=True)
     )
@@ -248,7 +248,7 @@ def _channel(
         _strongest((*own_lines(seen.records, drive), *seen.foreign.waves), MOST_LINES - len(seen.foreign.stage)),
         seen.foreign.stage,
         sensor_fit(blocks.blocks, seen.name),
-        found,
+        paths,
     )
 
 
@@ -259,13 +259,13 @@ def _directions(lines: ChannelLines, library: SourceLibrary, draws: _Draws, rng:
     one that leaves least between them is taken.
     """
     tried = TRIED_DIRECTIONS if len({group.mesh for group in library.groups}) > 1 else 1
-    found = rng.standard_normal((len(draws.blocks), tried, library.energy_n2.shape[-1]))
-    found /= np.linalg.norm(found, axis=-1, keepdims=True)
+    drawn = rng.standard_normal((len(draws.blocks), tried, library.energy_n2.shape[-1]))
+    drawn /= np.linalg.norm(drawn, axis=-1, keepdims=True)
     best = [
         np.argmin(unlike_db(lines, np.array([library.level_db(w, chosen) for w in directions]), picked))
-        for directions, chosen, picked in zip(found, draws.gearboxes, draws.blocks, strict=True)
+        for directions, chosen, picked in zip(drawn, draws.gearboxes, draws.blocks, strict=True)
     ]
-    return np.asarray(found[np.arange(len(best)), best])
+    return np.asarray(drawn[np.arange(len(best)), best])
 
 
 def _strongest(lines: Iterable[OwnLine], most: int) -> tuple[OwnLine, ...]:
@@ -274,9 +274,9 @@ def _strongest(lines: Iterable[OwnLine], most: int) -> tuple[OwnLine, ...]:
 
 def _levels(records: tuple[OrderRecord, ...], groups: tuple[LineGroup, ...]) -> tuple[Interval, ...]:
     """Return the level of every group with all of its lines, foreign ones too; NaN where it stands out not always."""
-    found = [group_levels(record, groups) for record in records]
-    energy = np.array([10.0 * np.log10(np.maximum(level, 1e-30)) for level, _ in found])
-    visible = np.array([share > LEAST_LINE_SHARE for _, share in found]).all(axis=0)
+    levels = [group_levels(record, groups) for record in records]
+    energy = np.array([10.0 * np.log10(np.maximum(level, 1e-30)) for level, _ in levels])
+    visible = np.array([share > LEAST_LINE_SHARE for _, share in levels]).all(axis=0)
     return tuple(jackknife(column) for column in np.where(visible, energy, np.nan).T)
 
 
@@ -301,8 +301,8 @@ def _torque(config: dict[str, Any], said: tuple[float, float] | None) -> Any:
 
 def _random_rms(blocks: HealthyBlocks) -> tuple[float, float]:
     """Return lowest and highest relative deviation of the speed from turn groups to turn groups."""
-    found = []
+    deviations = []
     for block in blocks.blocks:
         turns = np.diff(block.pulses_s[::SLOW_TURNS])
-        found.append(float(turns.std() / turns.mean()) if turns.size > 2 else 0.0)
-    return min(max(min(found), 1e-6), LARGEST_RANDOM_RMS), min(max(*found, 1e-5), LARGEST_RANDOM_RMS)
+        deviations.append(float(turns.std() / turns.mean()) if turns.size > 2 else 0.0)
+    return min(max(min(deviations), 1e-6), LARGEST_RANDOM_RMS), min(max(*deviations, 1e-5), LARGEST_RANDOM_RMS)

@@ -64,16 +64,16 @@ def wave_lines(multiples: Multiples, drive: TrainOrders, channel: str, known: tu
     known : tuple of float
         Orders that are taken already: those of a second stage.
     """
-    found: dict[float, OwnLine] = {}
+    waves: dict[float, OwnLine] = {}
     for shaft in drive.shafts:
         if channel not in multiples.get(shaft.name, {}):
             continue
-        own, step = multiples[shaft.name][channel], shaft.step
-        for number in (np.flatnonzero(own.excess_db >= WAVE_EXCESS_DB) + 1).tolist():
+        of_channel, step = multiples[shaft.name][channel], shaft.step
+        for number in (np.flatnonzero(of_channel.excess_db >= WAVE_EXCESS_DB) + 1).tolist():
             order = number * step
-            if number > SHAFT_ORDERS and all(abs(order - other) > SAME_ORDER for other in (*known, *found)):
-                found[order] = shaft_line("", number, step, own).line
-    return tuple(found.values())
+            if number > SHAFT_ORDERS and all(abs(order - other) > SAME_ORDER for other in (*known, *waves)):
+                waves[order] = shaft_line("", number, step, of_channel).line
+    return tuple(waves.values())
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,18 +103,21 @@ class StageLine:
 def second_stage(multiples: Multiples, drive: TrainOrders) -> SecondStage | None:
     """Return the stage that recordings show; None where no comb stands out clearly."""
     steps = {shaft.name: shaft.step for shaft in drive.shafts}
-    found = [
+    stages = [
         SecondStage(shaft, count, steps[shaft], score)
         for shaft, channels in multiples.items()
         for count, score, of_others in _scores(tuple(channels.values()))
         if score >= LEAST_SCORE and of_others >= LEAST_OF_OTHERS
     ]
-    best = max(found, key=lambda one: one.score, default=None)
-    if best is None or any(best.score < LEAD * one.score for one in found if not _same_lines(one, best)):
+    best = max(stages, key=lambda stage: stage.score, default=None)
+    if best is None or any(best.score < LEAD * stage.score for stage in stages if not _same_lines(stage, best)):
         return None
     channels = tuple(multiples[best.shaft].values())
-    family = [one for one in found if one.shaft == best.shaft and best.teeth % one.teeth == 0]
-    return min((one for one in family if one == best or _shows_others(channels, one, best)), key=lambda one: one.teeth)
+    family = [stage for stage in stages if stage.shaft == best.shaft and best.teeth % stage.teeth == 0]
+    return min(
+        (stage for stage in family if stage == best or _shows_others(channels, stage, best)),
+        key=lambda stage: stage.teeth,
+    )
 
 
 def _shows_others(channels: tuple[ShaftMultiples, ...], one: SecondStage, best: SecondStage) -> bool:
@@ -145,13 +148,13 @@ def _evidence(channel: ShaftMultiples, numbers: np.ndarray) -> np.ndarray:
     """Return what lines at these multiples and their sidebands say in a channel (2, lines), up to the last shown."""
     tail_db, line = _tail_db(channel), channel.excess_db[numbers - 1]
     beside = (np.minimum(channel.excess_db[numbers - 1 + side], line - BELOW_DB) for side in (-1, 1))
-    found = np.array(
+    evidence = np.array(
         [_likelier(line, tail_db, SHOWN), np.sum([_likelier(one, tail_db, SIDEBAND_SHOWN) for one in beside], axis=0)]
     )
-    total = np.cumsum(found.sum(axis=0))
+    total = np.cumsum(evidence.sum(axis=0))
     last = int(np.argmax(total))
-    found[:, last + 1 if total[last] > 0.0 else 0 :] = 0.0
-    return found
+    evidence[:, last + 1 if total[last] > 0.0 else 0 :] = 0.0
+    return evidence
 
 
 def _likelier(excess_db: np.ndarray, tail_db: float, shown: float) -> np.ndarray:
@@ -160,8 +163,8 @@ def _likelier(excess_db: np.ndarray, tail_db: float, shown: float) -> np.ndarray
     Without one an excess of either sign falls off as exp(-|e|/tail); 0 where nothing is known.
     """
     without = 0.5 / tail_db * np.exp(-np.clip(excess_db, 0.0, SURE_DB) / tail_db)
-    found = np.log(1.0 - shown + np.where(excess_db >= 0.0, shown / LARGEST_DB / without, 0.0))
-    return np.where(np.isfinite(excess_db), found, 0.0)
+    log_ratio = np.log(1.0 - shown + np.where(excess_db >= 0.0, shown / LARGEST_DB / without, 0.0))
+    return np.where(np.isfinite(excess_db), log_ratio, 0.0)
 
 
 def _same_lines(one: SecondStage, other: SecondStage) -> bool:
@@ -174,23 +177,23 @@ def _same_lines(one: SecondStage, other: SecondStage) -> bool:
 
 def stage_lines(stage: SecondStage, multiples: ShaftMultiples) -> tuple[StageLine, ...]:
     """Return the lines of a stage that stand out in a channel, less what errors of the teeth add there."""
-    found = []
+    lines = []
     for h in range(1, HIGHEST_LINE + 1):
         for side in (-1, 0, 1):
             number = h * stage.teeth + side
             if number <= multiples.excess_db.size and multiples.excess_db[number - 1] >= LINE_EXCESS_DB:
                 name = f"line {h}" + (f", sideband {side:+d}" if side else "")
-                found.append(shaft_line(name, number, stage.step, multiples))
-    return tuple(found)
+                lines.append(shaft_line(name, number, stage.step, multiples))
+    return tuple(lines)
 
 
 def shaft_line(name: str, number: int, step: float, multiples: ShaftMultiples) -> StageLine:
     """Return the line at a multiple of a shaft's order (step), less what errors of the teeth add there."""
     power = 10.0 ** (0.1 * multiples.level_db[:, number - 1])
     usual = 10.0 ** (0.1 * multiples.usual_db[number - 1])
-    own = np.maximum(power - usual, 0.1 * power)
-    amplitude = np.sqrt(2.0 * own)
-    least = LEAST_SPREAD if own.size >= FEWEST_RECORDINGS else UNKNOWN_SPREAD
+    above = np.maximum(power - usual, 0.1 * power)
+    amplitude = np.sqrt(2.0 * above)
+    least = LEAST_SPREAD if above.size >= FEWEST_RECORDINGS else UNKNOWN_SPREAD
     spread = max(float(np.sqrt(amplitude.max() / amplitude.min())), least)
     line = OwnLine(number * step, 0.0, float(np.median(amplitude)), spread)
-    return StageLine(name, jackknife(10.0 * np.log10(own)), line)
+    return StageLine(name, jackknife(10.0 * np.log10(above)), line)

@@ -69,10 +69,10 @@ def shaft_multiples(records: Sequence[OrderRecord], shaft: RigShaft, drive: Trai
     mesh, also_of = (one(number, shaft, drive, told) for one in (_at_meshes, _also_of))
 
     def usual(level_db: np.ndarray) -> np.ndarray:
-        found = _around(level_db, number, mesh, also_of)
+        expected_db = _around(level_db, number, mesh, also_of)
         for teeth in shaft.teeth:
-            found = found + _returning(np.where(mesh, np.nan, level_db - found), number, teeth)
-        return found
+            expected_db = expected_db + _returning(np.where(mesh, np.nan, level_db - expected_db), number, teeth)
+        return expected_db
 
     mean = level.mean(axis=0)
     over_floor = mean - np.mean([_floor_db(record, number * shaft.step) for record in records], axis=0)
@@ -83,22 +83,22 @@ def shaft_multiples(records: Sequence[OrderRecord], shaft: RigShaft, drive: Trai
 
 def _at_meshes(number: np.ndarray, shaft: RigShaft, drive: TrainOrders, told: float) -> np.ndarray:
     """Return which multiples (k,) are mesh lines or beside them by few turns of a shaft of theirs."""
-    found = np.zeros(number.size, dtype=bool)
+    at_meshes = np.zeros(number.size, dtype=bool)
     for teeth in shaft.teeth:
-        found |= np.abs(number - np.round(number / teeth) * teeth) <= BESIDE_MESH
+        at_meshes |= np.abs(number - np.round(number / teeth) * teeth) <= BESIDE_MESH
     order = number * shaft.step
     for mesh in (one for one in drive.meshes if shaft not in one.shafts):
         beside = order - np.round(order / mesh.order) * mesh.order
         for step in (one.step for one in mesh.shafts):
             sideband = np.clip(np.round(beside / step), -BESIDE_MESH, BESIDE_MESH)
-            found |= np.abs(beside - sideband * step) < told
-    return found
+            at_meshes |= np.abs(beside - sideband * step) < told
+    return at_meshes
 
 
 def _also_of(number: np.ndarray, shaft: RigShaft, drive: TrainOrders, told: float) -> np.ndarray:
     """Return (k, other shafts) of which shafts each multiple is one too, so that it holds their errors as well."""
     order = number * shaft.step
-    others = [one.step for one in drive.shafts if one != shaft]
+    others = [other.step for other in drive.shafts if other != shaft]
     return np.stack([np.abs(order - np.round(order / step) * step) < told for step in others], axis=1)
 
 
@@ -119,24 +119,24 @@ def _floor_db(record: OrderRecord, orders: np.ndarray) -> np.ndarray:
 
 def _around(level_db: np.ndarray, number: np.ndarray, mesh: np.ndarray, also_of: np.ndarray) -> np.ndarray:
     """Return the median of the nearest multiples of the same kind (k,), without those at mesh lines and beside it."""
-    found = np.full(number.size, math.inf)
+    median_db = np.full(number.size, math.inf)
     for k in range(number.size):
         alike = np.flatnonzero((also_of == also_of[k]).all(axis=1) & ~mesh & (np.abs(number - number[k]) > 1))
         if alike.size >= FEWEST_ALIKE:
             nearest = np.argsort(np.abs(alike - k), kind="stable")[:AROUND]
-            found[k] = np.median(level_db[alike[nearest]])
-    return found
+            median_db[k] = np.median(level_db[alike[nearest]])
+    return median_db
 
 
 def _returning(above_db: np.ndarray, number: np.ndarray, teeth: int) -> np.ndarray:
     """Return what all multiples as far from a mesh line have in common (k,) [dB], 0 at least."""
-    found = np.zeros(number.size)
+    common_db = np.zeros(number.size)
     for rest in range(teeth):
         alike = number % teeth == rest
         known = above_db[alike][np.isfinite(above_db[alike])]
         if known.size >= FEWEST_ALIKE:
-            found[alike] = max(0.0, float(np.median(known)))
-    return found
+            common_db[alike] = max(0.0, float(np.median(known)))
+    return common_db
 
 
 Multiples = Mapping[str, Mapping[str, ShaftMultiples]]
@@ -145,21 +145,24 @@ Multiples = Mapping[str, Mapping[str, ShaftMultiples]]
 
 def machine_multiples(channels: Mapping[str, Sequence[OrderRecord]], drive: TrainOrders) -> Multiples:
     """Return the multiples of all shafts in every channel; a shaft is left out where recordings are too short."""
-    found: dict[str, dict[str, ShaftMultiples]] = {}
+    multiples: dict[str, dict[str, ShaftMultiples]] = {}
     for shaft in drive.shafts:
         each = {name: shaft_multiples(records, shaft, drive) for name, records in channels.items()}
-        known = {name: one for name, one in each.items() if one is not None}
+        known = {name: of_channel for name, of_channel in each.items() if of_channel is not None}
         if known:
-            found[shaft.name] = known
-    steps = {shaft.name: shaft.step for shaft in drive.shafts if shaft.name in found}
+            multiples[shaft.name] = known
+    steps = {shaft.name: shaft.step for shaft in drive.shafts if shaft.name in multiples}
     return {
-        name: {channel: _beside_nearest(one, name, steps, found, channel) for channel, one in each.items()}
-        for name, each in found.items()
+        name: {
+            channel: _beside_nearest(of_channel, name, steps, multiples, channel)
+            for channel, of_channel in each.items()
+        }
+        for name, each in multiples.items()
     }
 
 
 def _beside_nearest(
-    own: ShaftMultiples, shaft: str, steps: Mapping[str, float], multiples: Multiples, channel: str
+    asked: ShaftMultiples, shaft: str, steps: Mapping[str, float], multiples: Multiples, channel: str
 ) -> ShaftMultiples:
     """Return the multiples of a shaft with no more excess than they have over those of the slowest shaft beside."""
     slowest = min((name for name in steps if channel in multiples[name]), key=lambda name: steps[name])
@@ -167,11 +170,11 @@ def _beside_nearest(
     level, known = other.level_db.mean(axis=0), np.isfinite(other.excess_db)
     order = step * np.arange(1, level.size + 1)
     least = (1.5 if slowest == shaft else 0.05) * step  # neither itself nor its sidebands
-    over = np.full(own.excess_db.size, np.nan)
-    for k in np.flatnonzero(np.isfinite(own.excess_db)):
+    over = np.full(asked.excess_db.size, np.nan)
+    for k in np.flatnonzero(np.isfinite(asked.excess_db)):
         away = np.abs(order - (k + 1) * steps[shaft])
         near = known & (away > least) & (away < NEAREST * step)
         if np.count_nonzero(near) >= FEWEST_NEAREST:
-            over[k] = own.level_db[:, k].mean() - np.median(level[near])
+            over[k] = asked.level_db[:, k].mean() - np.median(level[near])
     usual = np.nanmedian(over) if np.isfinite(over).any() else 0.0
-    return replace(own, excess_db=np.fmin(own.excess_db, over - usual))
+    return replace(asked, excess_db=np.fmin(asked.excess_db, over - usual))

@@ -171,31 +171,31 @@ def read_universal(path: Path) -> Columns:
         raise UsageError(f"{path}: ends early: the last line of a universal file is -1. Copy or export it again.")
     file = pyuff.UFF(str(path))
     places = [place for place, kind in enumerate(file.get_set_types()) if kind == TYPE]
-    found = [file.read_sets(place) for place in places]
-    times = [one for one in found if one["func_type"] == TIME_RESPONSE and one["ord_data_type"] in REAL]
+    records = [file.read_sets(place) for place in places]
+    times = [record for record in records if record["func_type"] == TIME_RESPONSE and record["ord_data_type"] in REAL]
     if not times:
         raise UsageError(
-            f"{path}: holds no time record: {len(found)} data sets of type 58, none of them function type 1 with real "
-            "values; export the time signals"
+            f"{path}: holds no time record: {len(records)} data sets of type 58, none of them function type 1 with "
+            "real values; export the time signals"
         )
-    return stated_columns([_signal(path, one) for one in times], "UFF 58")
+    return stated_columns([_signal(path, record) for record in times], "UFF 58")
 
 
-def _signal(path: Path, found: dict[str, Any]) -> StatedSignal:
-    values = np.asarray(found["data"], dtype=np.float64)
-    if values.size != found["num_pts"]:
-        raise UsageError(f"{path}: a record states {found['num_pts']} values and holds {values.size}; export it again")
-    first = found["id1"].strip()
-    place = f"{found['rsp_node']}:{found['rsp_dir']}"
-    unit = found["ordinate_axis_units_lab"].strip()
+def _signal(path: Path, record: dict[str, Any]) -> StatedSignal:
+    values = np.asarray(record["data"], dtype=np.float64)
+    if values.size != record["num_pts"]:
+        raise UsageError(f"{path}: a record states {record['num_pts']} values and holds {values.size}; export it again")
+    first = record["id1"].strip()
+    place = f"{record['rsp_node']}:{record['rsp_dir']}"
+    unit = record["ordinate_axis_units_lab"].strip()
     names = ("" if first.upper() == "NONE" else first, place)
-    return StatedSignal(names, values, _rate_hz(path, found), None if unit.upper() == "NONE" else unit)
+    return StatedSignal(names, values, _rate_hz(path, record), None if unit.upper() == "NONE" else unit)
 
 
-def _rate_hz(path: Path, found: dict[str, Any]) -> float | None:
-    if found["abscissa_spacing"] == EVEN:
-        return rate_from_increment(found["abscissa_inc"], INCREMENT_DIGITS)
-    steps = np.diff(np.asarray(found["x"], dtype=np.float64))
+def _rate_hz(path: Path, record: dict[str, Any]) -> float | None:
+    if record["abscissa_spacing"] == EVEN:
+        return rate_from_increment(record["abscissa_inc"], INCREMENT_DIGITS)
+    steps = np.diff(np.asarray(record["x"], dtype=np.float64))
     mean = float(steps.mean()) if steps.size else math.nan
     if not mean > 0.0 or np.abs(steps - mean).max() > UNEVEN_STEP * mean:
         raise UsageError(f"{path}: a record has uneven steps of time; resample it to one rate")
@@ -226,19 +226,19 @@ def read_hdf5(path: Path) -> Columns:
         for data in held:
             if data.name.startswith("/#") or data.attrs.get("MATLAB_class") in (b"char", b"cell", b"function_handle"):
                 continue
-            own = not data.is_virtual and not data.external
-            if own and data.dtype.kind in "biuf" and data.ndim in (1, 2) and data.size > 1:
+            is_stored_here = not data.is_virtual and not data.external
+            if is_stored_here and data.dtype.kind in "biuf" and data.ndim in (1, 2) and data.size > 1:
                 signals += _signals(data, about)
     return stated_columns(signals, "HDF5")
 
 
 def _scalars(held: Sequence[Any]) -> dict[str, dict[str, float]]:
     """Return single numbers by the group they lie in, as MAT files of version 7.3 hold rates."""
-    found: dict[str, dict[str, float]] = {}
+    scalars: dict[str, dict[str, float]] = {}
     for data in held:
         if not data.is_virtual and not data.external and data.size == 1 and data.dtype.kind in "iuf":
-            found.setdefault(data.parent.name, {})[data.name.rpartition("/")[2].lower()] = _number(data[()]) or 0.0
-    return found
+            scalars.setdefault(data.parent.name, {})[data.name.rpartition("/")[2].lower()] = _number(data[()]) or 0.0
+    return scalars
 
 
 def _signals(data: Any, about: Mapping[str, Mapping[str, float]]) -> list[StatedSignal]:
@@ -275,8 +275,8 @@ def _number(value: Any) -> float | None:
 
 
 def _unit(stated: dict[str, Any]) -> str | None:
-    found = next((stated[name] for name in UNITS if name in stated), None)
-    text = found.decode("utf-8", "replace") if isinstance(found, bytes) else found
+    unit = next((stated[name] for name in UNITS if name in stated), None)
+    text = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else unit
     return text if isinstance(text, str) else None
 
 

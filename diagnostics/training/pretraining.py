@@ -121,7 +121,7 @@ class PretrainingSettings:
             raise UsageError(f"families: received {self.families!r}; allowed: names of configurations, one or more")
         wholes = {name: getattr(self, name) for name in ("gearboxes", "mixed", "passes")}
         wholes |= {f"widths[{place}]": width for place, width in enumerate(self.widths or (0,))}
-        for name, value, least in (*((*one, 1) for one in wholes.items()), ("batch", self.batch, 2)):
+        for name, value, least in (*((*item, 1) for item in wholes.items()), ("batch", self.batch, 2)):
             if isinstance(value, bool) or not isinstance(value, int) or value < least:
                 raise UsageError(f"{name}: received {value!r}; allowed: whole numbers from {least} on")
         for name, value, most in (("rate", self.rate, 1.0), ("decay", self.decay, 10.0), ("alone", self.alone, 1.0)):
@@ -191,11 +191,11 @@ def pretrain(
     end = None if minutes is None else time.monotonic() + 60.0 * minutes
     try:
         kept = _averages(home, chosen, workers, partial(_check, end), say)
-        found = _trained(home, chosen, kept, partial(_check, end), say)
+        trained = _trained(home, chosen, kept, partial(_check, end), say)
     except _TimeIsUpError:
         say(f"{minutes:g} minutes are over; the same call goes on")
         return None
-    return _finished(home, chosen, kept, *found)
+    return _finished(home, chosen, kept, *trained)
 
 
 def _check(end: float | None) -> None:
@@ -224,16 +224,16 @@ def _averages(
             continue
         check()
         stream = begun(first_gearbox=done * chosen.mixed)
-        with closing(stream.blocks()) as found:  # type: ignore[type-var]
+        with closing(stream.blocks()) as simulated:  # type: ignore[type-var]
             for number in range(done, blocks):
-                _write_block(_block(home, family, number), next(found), stream)
+                _write_block(_block(home, family, number), next(simulated), stream)
                 say(f"family {family + 1} of {len(designs)}: {(number + 1) * chosen.mixed} gearboxes")
                 check()
     return _read(home, len(designs), blocks)
 
 
 def _check_families(streams: Sequence[Any]) -> None:
-    counts = [sum(one.quantity == ACCELERATION for one in stream.channels) for stream in streams]
+    counts = [sum(channel.quantity == ACCELERATION for channel in stream.channels) for stream in streams]
     for stream, count in zip(streams, counts, strict=True):
         meshes = len(stream.design.names.meshes)
         if meshes != 1 or not count or count != counts[0]:
@@ -273,7 +273,7 @@ def _write_block(path: Path, records: Sequence[Mapping[str, Any] | None], stream
 
 
 def _of_record(record: Mapping[str, Any], stream: Any) -> GearLines:
-    columns = {one.name: record[one.column] for one in stream.channels if one.quantity == ACCELERATION}
+    columns = {channel.name: record[channel.column] for channel in stream.channels if channel.quantity == ACCELERATION}
     if not set(TEETH) <= record.keys():
         raise UsageError(f"families: received other gears than {' and '.join(GEARS)}; allowed: one pair of them")
     return gear_lines(columns, record["tacho_s"], stream.design.fs_hz, tuple(record[name] for name in TEETH))
@@ -303,12 +303,12 @@ def _read(home: Path, families: int, blocks: int) -> KeptRecords:
 
 def pair_splits(pairs: np.ndarray) -> np.ndarray:
     """Return the split of each pair of teeth (pairs, 2): dealt in the order of their digests, by no seed."""
-    found, first = np.full(len(pairs), TRAIN, dtype=object), 0
+    splits, first = np.full(len(pairs), TRAIN, dtype=object), 0
     order = np.argsort([hashlib.sha256("/".join(map(str, pair)).encode()).hexdigest() for pair in pairs.tolist()])
     for name, share in SHARES.items():
         count = ceil(share * len(pairs))
-        found[order[first : first + count]], first = name, first + count
-    return found.astype(str)
+        splits[order[first : first + count]], first = name, first + count
+    return splits.astype(str)
 
 
 def _rows(kept: KeptRecords) -> np.ndarray:
@@ -364,9 +364,9 @@ def _trained(
 def _moved(rows: np.ndarray, rng: np.random.Generator, alone: float) -> torch.Tensor:
     """Return rows as seen from another tooth, by a sensor of another sign, some without their healthy record."""
     shift, sign = int(rng.integers(rows.shape[-1])), rng.choice((-1.0, 1.0), len(rows))
-    found = np.roll(rows, shift, axis=-1).astype(np.float32) * sign[:, None, None, None].astype(np.float32)
-    found[rng.random(len(rows)) < alone, :, ALONE:] = 0.0
-    return torch.from_numpy(found)
+    moved = np.roll(rows, shift, axis=-1).astype(np.float32) * sign[:, None, None, None].astype(np.float32)
+    moved[rng.random(len(rows)) < alone, :, ALONE:] = 0.0
+    return torch.from_numpy(moved)
 
 
 def _finished(
@@ -384,7 +384,7 @@ def _finished(
     scores = _scores(network, kept, sides, truths)
     plan, split, owner = json.loads((home / PLAN).read_text()), kept.labels["split"], kept.labels["specimen_id"]
     covered = _covered(kept, chosen)
-    false = {side: found["called_damaged_of_sound"] for side, found in scores.items()}
+    false = {side: score["called_damaged_of_sound"] for side, score in scores.items()}
     save_gearbox_network(network, home / WEIGHTS, covered | {"called_damaged_of_sound": false})
     card: dict[str, Any] = plain(
         {
@@ -435,16 +435,16 @@ Sides: TypeAlias = tuple[tuple[str, np.ndarray, np.ndarray], ...]
 def _sides(kept: KeptRecords, rows: np.ndarray) -> Sides:
     alone = rows.copy()
     alone[..., ALONE:, :] = 0.0
-    known = np.array([found.size > 0 for found in healthy_references(kept.labels)])
+    known = np.array([references.size > 0 for references in healthy_references(kept.labels)])
     return ("alone", alone, np.ones(len(rows), dtype=bool)), ("beside", rows, known)
 
 
 def _widen(network: GearboxNetwork, sides: Sides, truths: DamageTruth, places: np.ndarray) -> None:
     """Widen intervals of the size so that they hold as many of the records left out as they say."""
     for side, (_, rows, seen) in enumerate(sides):
-        own = places[np.isfinite(truths.size[places]) & seen[places]]
-        if own.size:
-            known, (low, _, high) = truths.size[own], network.tell(rows[own]).size.T
+        sized = places[np.isfinite(truths.size[places]) & seen[places]]
+        if sized.size:
+            known, (low, _, high) = truths.size[sized], network.tell(rows[sized]).size.T
             missed = np.sort(np.maximum(low - known, known - high))
             rank = int(np.ceil((missed.size + 1) * (QUANTILES[-1] - QUANTILES[0]))) - 1
             network.size_widening[side] = float(missed[min(rank, missed.size - 1)])
@@ -463,11 +463,11 @@ def _set_limits(network: GearboxNetwork, kept: KeptRecords, sides: Sides, truths
         limits.seen_centre[side], limits.seen_precision[side] = fitted(
             np.concatenate(list(seen[learnt[beside[learnt]]]))
         )
-        own = unseen[beside[unseen]] if beside[unseen].any() else unseen
-        if own.size:
-            limits.farthest[side] = np.quantile(limits.distances(averages[own], seen[own], side), LIKE, 0)
-            odds, ill = network.tell(rows[own]).damage.astype(np.float64), truths.damaged[own] > 0.0
-            state = kept.labels["state"][own]
+        judged = unseen[beside[unseen]] if beside[unseen].any() else unseen
+        if judged.size:
+            limits.farthest[side] = np.quantile(limits.distances(averages[judged], seen[judged], side), LIKE, 0)
+            odds, ill = network.tell(rows[judged]).damage.astype(np.float64), truths.damaged[judged] > 0.0
+            state = kept.labels["state"][judged]
             sound = [np.quantile(odds[state == name], levels) for name in dict.fromkeys(state[~ill].tolist())]
             if sound:  # of that which looks worst: a loose sensor, which looks sounder, must not lower the limit
                 limits.sound[side] = np.max(sound, axis=0)
@@ -477,7 +477,7 @@ def _set_limits(network: GearboxNetwork, kept: KeptRecords, sides: Sides, truths
 
 def _scores(network: GearboxNetwork, kept: KeptRecords, sides: Sides, truths: DamageTruth) -> dict[str, Any]:
     """Return what the network tells of unseen pairs, alone and beside a healthy record."""
-    found, averages = {}, average_numbers(kept.averages)
+    scores, averages = {}, average_numbers(kept.averages)
     for side, (name, rows, seen) in enumerate(sides):
         places = kept.of_split(TEST)
         places = places[seen[places]]
@@ -489,32 +489,32 @@ def _scores(network: GearboxNetwork, kept: KeptRecords, sides: Sides, truths: Da
             like = (off <= network.limits.farthest[side]).all(axis=1)
             said = told.damage.astype(np.float64) > network.limits.said(side, SAID)
             ill = truths.damaged[places] > 0.0
-            found[name] = _scores_of(told, truths.chosen(places), labels, drawn) | {
+            scores[name] = _scores_of(told, truths.chosen(places), labels, drawn) | {
                 "answered": float(like.mean()),
                 "called_damaged_of_sound": float(said[like & ~ill].mean()) if (like & ~ill).any() else None,
                 "called_damaged_of_damaged": float(said[like & ill].mean()) if (like & ill).any() else None,
             }
-    return found
+    return scores
 
 
 def _scores_of(told: Told, truths: DamageTruth, labels: Mapping[str, np.ndarray], drawn: str) -> dict[str, Any]:
     """Return scores with limits; `drawn` names what is resampled, since that is what others would draw anew."""
     damage, specimen = told.damage.astype(np.float64), labels["specimen_id"]
     weights = bootstrap_weights(labels[drawn], 0)
-    ill, healthy, found = truths.damaged > 0.0, labels["fault"] == HEALTHY, dict[str, Any]()
+    ill, healthy, scores = truths.damaged > 0.0, labels["fault"] == HEALTHY, dict[str, Any]()
     for name in ("damage", *dict.fromkeys(labels["state"][~healthy].tolist())):
         of = ill if name == "damage" else labels["state"] == name
         asked = healthy | of  # of sound teeth with another fault: half, as far as damage is told from that
-        found[f"auc_{name}"] = asdict(area(damage[asked], of[asked], weights[:, asked], specimen[asked]))
+        scores[f"auc_{name}"] = asdict(area(damage[asked], of[asked], weights[:, asked], specimen[asked]))
     for name, said, place in (("kind", told.kind, truths.kind), ("gear", told.gear, truths.gear)):
         known = place != NOWHERE
         if known.any():
-            found[f"{name}_named_rightly"] = float((said.argmax(axis=1)[known] == place[known]).mean())
+            scores[f"{name}_named_rightly"] = float((said.argmax(axis=1)[known] == place[known]).mean())
     sized = np.isfinite(truths.size)
     if sized.any():
         low, middle, high = told.size[sized].T
-        own = truths.size[sized]
-        found["size_in_interval"] = float(((low <= own) & (own <= high)).mean())
-        found["size_interval_factor"] = float(np.exp(np.median(high - low)))
-        found["size_median_factor"] = float(np.exp(np.median(np.abs(middle - own))))
-    return found
+        size = truths.size[sized]
+        scores["size_in_interval"] = float(((low <= size) & (size <= high)).mean())
+        scores["size_interval_factor"] = float(np.exp(np.median(high - low)))
+        scores["size_median_factor"] = float(np.exp(np.median(np.abs(middle - size))))
+    return scores
