@@ -24,7 +24,7 @@ CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 FULL = CONFIGS / "industrial.yaml"
 BARE = ("manufacture=null", "variation={}", "background=null", "sensors.lid.position_mm=[0, 0]", "states.sham=null")
 """Without what the preset has of the sections that are added one by one; with a place that grows with the gears."""
-MADE = "manufacture={accuracy_class: 6, helix: iso_1328, crowning_um: 5}"
+MADE = "manufacture={accuracy_class: 6, helix: iso_1328, crowning_um: 5, flank_waves: on}"
 PAIR = "gears.pairs=[{teeth: [18, 47], module_mm: 3, face_width_mm: 20}]"
 OILS = "dynamics.friction.oil=[ISO VG 100, ISO VG 220]"
 AROUND = (
@@ -46,8 +46,8 @@ SENSOR_PARTS = ("pink_noise", "mains")
 HEAD = """# Columns of a set
 
 The files carry these texts as metadata (`unit`, `meaning`, `role`); `make reference` prints them. `CHANNEL` stands for
-`SENSOR_AXIS`, such as `lid_vertical`. Of a pair the meaning is that of the pinion's. In brackets stand unit, type
-(double where none stands) and role. Sets with numbers from files have besides `path_number_CHANNEL` and
+`SENSOR_AXIS`, such as `lid_vertical`. **A name with \\* is there for the gear too**: `teeth_pinion`, `teeth_gear`. The
+type is double where none stands. Sets with numbers from files have besides `path_number_CHANNEL` and
 `noise_spectrum_CHANNEL_m_s2`.
 
 | role | what it is | may a classifier have it | may it tell the state |
@@ -82,7 +82,7 @@ def needs(full: pa.Schema) -> dict[str, str]:
     found: dict[str, str] = {}
     for section in ADDED:
         found |= dict.fromkeys(set(full.names) - set(schema(without=section).names), f"`{section}`")
-    for key, off in (("helix", "off"), ("crowning_um", "0")):
+    for key, off in (("helix", "off"), ("crowning_um", "0"), ("flank_waves", "off")):
         less = schema([f"manufacture.{key}={off}"])
         found |= dict.fromkeys(set(full.names) - set(less.names), f"`manufacture.{key}`")
     sensors = [one.name for one in siggen.load_config(FULL).sensors]
@@ -100,40 +100,56 @@ def channels(full: pa.Schema) -> list[str]:
     return [f"{fact[b'sensor'].decode()}_{fact[b'axis'].decode()}" for fact in facts if b"sensor" in fact]
 
 
+COLUMN_TABLE = ("|column|unit, type|meaning|", "|---|---|---|")
+
+
 def rows(fields: Iterable[pa.Field], brought: Mapping[str, str], named: Iterable[str]) -> Iterator[str]:
-    """Yield one line for every column, channels together, under the section that brings it."""
+    """Yield one line for every column, channels together, by the section that brings it and by role."""
     fields, seen = list(fields), set()
-    groups: dict[str, list[str]] = {"": []}
+    groups: dict[tuple[str, str], list[str]] = {}
     names = {general(field.name, named) for field in fields}
     for field in fields:
         name = general(field.name, named)
-        if name in seen or ("gear" in name and name.replace("gear", "pinion") in names):
+        if name in seen or is_twin(name, names):
             continue
         seen.add(name)
-        both = name.replace("pinion", "gear")
-        shown = f"`{name}`, `{both}`" if both in names - {name} else f"`{name}`"
         facts = {key.decode(): value.decode() for key, value in (field.metadata or {}).items()}
         meaning = general(facts.get("meaning", "signal of the channel" if "sensor" in facts else ""), named)
         kind = re.sub(r"<element: (\w+)[^>]*>(\[\d+\])?", r" of \1", str(field.type)).replace("fixed_size_list", "list")
-        unit = facts.get("unit", "")
-        known = (unit, "" if kind == "double" else kind, facts["role"])
-        line = f"* {shown}: {meaning} ({'; '.join(part for part in known if part)})"
-        groups.setdefault(brought.get(field.name, ""), []).append(line)
-    for needed, lines in groups.items():
-        yield from (["", f"With {needed}:", ""] if needed else [])
-        yield from lines
+        known = ", ".join(part for part in (facts.get("unit", ""), "" if kind == "double" else kind) if part)
+        group = groups.setdefault((brought.get(field.name, ""), facts["role"]), [])
+        group.append(f"|{marked(name, names)}|{known}|{meaning}|")
+    for (needed, role), lines in sorted(groups.items(), key=lambda one: bool(one[0][0])):
+        yield from (f"With {needed}, `{role}`:" if needed else f"`{role}`:", "", *COLUMN_TABLE, *lines, "")
+
+
+def is_twin(name: str, names: Iterable[str]) -> bool:
+    """Tell whether a name is there for the pinion too, which stands for both."""
+    return "gear" in name and name.replace("gear", "pinion") in names
+
+
+def marked(name: str, names: Iterable[str]) -> str:
+    """Return a name; with a mark if it is there for the gear too."""
+    return f"`{name}`" + ("\\*" if "pinion" in name and name.replace("pinion", "gear") in names else "")
+
+
+NOWHERE = "; NaN while the pair does not touch on its drive flank"
 
 
 def internals() -> Iterator[str]:
     """Yield the internal quantities of a gearbox with casing, tooth pairs and oil friction, a line for each meaning."""
-    names: dict[str, list[str]] = {}
-    for name in available_quantities(siggen.load_config(CONFIGS / "quickstart.yaml").possible):
+    lines: dict[str, list[str]] = {}
+    quantities = available_quantities(siggen.load_config(CONFIGS / "quickstart.yaml").possible)
+    names = [re.sub(r"pair_\d+", "pair_k", name) for name in quantities]
+    for name, shown in zip(quantities, names, strict=True):
+        if is_twin(shown, names):
+            continue
         column = quantity_column(name, PAIR_NAMES)
-        shown = re.sub(r"pair_\d+", "pair_k", name)
-        unit = f" ({column.unit})" if column.unit else ""
-        same = names.setdefault(f"{column.meaning}{unit}", [])
-        same += [f"`{shown}`"] if f"`{shown}`" not in same else []
-    yield from (f"* {', '.join(same)}: {text}" for text, same in names.items())
+        text = marked(shown, names) + ("†" if NOWHERE in column.meaning else "")
+        same = lines.setdefault(f"{column.unit}|{column.meaning.replace(NOWHERE, '')}|", [])
+        same += [text] if text not in same else []
+    yield from ("|quantity|unit|meaning|", "|---|---|---|")
+    yield from (f"|{', '.join(same)}|{text}" for text, same in lines.items())
 
 
 def page() -> str:
@@ -150,23 +166,21 @@ def page() -> str:
             "In `data/*.parquet` and, without signals, in `labels.parquet`.",
             "",
             *rows(labels, brought, named),
-            "",
             "## Signals",
             "",
             "In `data/*.parquet` only.",
             "",
             *rows(signals, brought, named),
-            "",
             "## Damage",
             "",
             "In `damage.parquet`: one row per pit or spall of a record.",
             "",
             *rows(damage_schema(set_columns(siggen.load_config(FULL))), {}, ()),
-            "",
             "## Internal quantities",
             "",
             "In `internals/*.parquet`, with `internals` in the YAML file; of one record by `siggen show --internals`.",
             "The list is that of `quickstart`. `pair_k` is a pair of teeth in reach of contact.",
+            "† NaN while it does not touch on its drive flank.",
             "",
             *internals(),
         )

@@ -22,28 +22,27 @@ SECTION_KIND = "section (kind: "
 
 HEAD = """# Keys of the YAML file
 
-Begin with [the twenty keys that matter](twenty_keys.md). `make reference` prints this page from the JSON Schema that `siggen init` writes.
+Begin with [the twenty keys that matter](twenty_keys.md). `make reference` prints this page.
 
 * **x** is a number or a [range](#ranges) such as `[1, 2]`, drawn once per gearbox; **c** is a number alone, **n** a whole one.
 * A key without a default is required wherever its section stands.
 * The end of a key is its unit: `_mm`, `_um` (µm), `_deg` and `_gpa` for gears, SI for the rest; `n_s_per_m` is N s/m.
-* `a.b` is key `b` in section `a`; `a[].b` of every entry of the list `a`, `a.NAME.b` of every name. On the command line: `--set a.b=VALUE`,
-  `--set a.0.b=VALUE` for the first entry, `--set states.severe.b=VALUE`.
-* Keys of one meaning share a line, divided by a slash where they differ. A key of `pinion` or `shafts.driver` stands for that of `gear` or
-  `shafts.driven` too, if that has no line.
-* **extends** names a preset or another file. Mappings are merged key by key, states and sensors by name, all else is replaced. A state or sensor that
-  is null is removed; `others: null` takes over none.
+* `a.b` is key `b` in section `a`, `a[].b` in each entry of a list, `a.NAME.b` in each name. On the command line: `--set a.b=VALUE`,
+  `--set a.0.b=VALUE`, `--set states.severe.b=VALUE`.
+* Keys of one meaning share a line, with slashes where they differ. Lines of `pinion` and `shafts.driver` hold for `gear` and
+  `shafts.driven` too.
+* **extends** merges mappings key by key, [states](../understand/states.md) and sensors by name, and replaces all else.
 """
 RANGES_TEXT = """## Ranges
 
-Every gearbox draws its own value, except where a key says otherwise. `{each: [1.0, [0.9, 1.1]]}` gives a number or range for each of several things,
-where a key says so; a place `[x, y]` has one for each of its two.
+Every gearbox draws its own value, except where a key says otherwise. `{each: [1.0, [0.9, 1.1]]}` gives one for each of several things,
+where a key says so; a place `[x, y]` has two.
 """
 
 CATALOGUES_TEXT = """## Catalogues
 
-A word stands for the numbers of its line. Keys beside it go first: `{model: laboratory, range_m_s2: 2000}`;
-`background: {like: laboratory, base: null}`. The set's own `config.yaml` holds all numbers.
+A word stands for the numbers of its line. Keys next to it go first: `{model: laboratory, range_m_s2: 2000}`;
+`background: {like: laboratory, base: null}`. `all` holds for every word.
 """
 EXAMPLES = {
     "splits": "splits: {train: 10, validation: 5, test: 5}",
@@ -110,7 +109,7 @@ def allowed(schema: Schema, value: Mapping[str, Any]) -> str:
     if "const" in value:
         return f"`{value['const']}`"
     if "enum" in value:
-        return ", ".join(f"`{word}`" for word in value["enum"])
+        return words_of(value["enum"])
     if "$ref" in value:
         found = schema.resolved(value)
         kind = found.get("properties", {}).get("kind", {}).get("const")
@@ -131,6 +130,14 @@ def allowed(schema: Schema, value: Mapping[str, Any]) -> str:
     return limits(value, letter) if letter else words[value["type"]]
 
 
+def words_of(words: list[str]) -> str:
+    """Return words that a key may hold; what all begin with stands once."""
+    begins = {word.rpartition(" ")[0] for word in words}
+    if len(begins) == 1 and (begin := begins.pop()):
+        return f"`{begin}` {', '.join(word.removeprefix(f'{begin} ') for word in words)}"
+    return ", ".join(f"`{word}`" for word in words)
+
+
 def several(schema: Schema, alternatives: list[Mapping[str, Any]]) -> str:
     """Return the alternatives of a value; plain number and distribution together are a Number."""
     drawn = [part for part in alternatives if any(is_number_part(each) for each in [part, *part.get("oneOf", ())])]
@@ -146,7 +153,7 @@ def several(schema: Schema, alternatives: list[Mapping[str, Any]]) -> str:
         found = [f"section with {', '.join(f'`{key}`' for key in keys)}" for keys in needed] + found[len(needed) :]
     kinds = [each.removeprefix(SECTION_KIND).rstrip(")") for each in found if each.startswith(SECTION_KIND)]
     if len(kinds) > 1:
-        found = [f"section of kind {', '.join(kinds)}", *(each for each in found if not each.startswith(SECTION_KIND))]
+        found = ["section of a kind", *(each for each in found if not each.startswith(SECTION_KIND))]
     return " or ".join(dict.fromkeys(found))
 
 
@@ -261,15 +268,18 @@ def without_repeated(schema: Schema, keys: list[Key]) -> list[Key]:
     return left
 
 
-def listed(schema: Schema, entry: Entry) -> str | None:
-    """Return the line of a key, or nothing of a section that holds nothing but its keys."""
+def shown_names(entry: Entry) -> list[str]:
+    """Return the names of a key without those that a twin stands for."""
+    alike = {name.replace(a, b) for a, b in TWINS.items() for name in entry.names if a in name}
+    return [name for name in entry.names if name not in alike]
+
+
+def listed(schema: Schema, entry: Entry, place: str) -> str:
+    """Return the line of a key in the table of a section."""
     first = entry.keys[0]
     values = entry.values(schema)
     defaults = "" if entry.defaults == [""] else " / ".join(each or "required" for each in entry.defaults)
-    if entry.is_plain(schema):
-        return None
-    alike = {name.replace(a, b) for a, b in TWINS.items() for name in entry.names if a in name}
-    names = ", ".join(f"`{name}`" for name in entry.names if name not in alike)
+    names = ", ".join(f"`{name.removeprefix(f'{place}.')}`" for name in shown_names(entry))
     if defaults == "`null`":
         values = values.removesuffix(" or `null`")
     if (of := TAKEN_OVER.get(f"{first.path}.NAME")) is not None:
@@ -277,15 +287,41 @@ def listed(schema: Schema, entry: Entry) -> str | None:
     return row(names, described(schema, first.schema), values, defaults)
 
 
-def listing_of(schema: Schema, rows: list[Entry]) -> Iterator[str]:
-    """Yield the lines of a section, those of the same kinds together."""
+LEAST_ROWS = 3
+"""A section with fewer keys has no table of its own: they stand with their whole names in the one around it."""
+
+
+def by_section(rows: list[Entry]) -> dict[str, list[Entry]]:
+    """Return section, empty for the top one -> its keys; those of several sections stand in the top one."""
+    held = []
+    for entry in rows:
+        places = {name.rpartition(".")[0] for name in shown_names(entry)}
+        held.append(places.pop() if len(places) == 1 else "")
+    while few := [place for place in held if place and held.count(place) < LEAST_ROWS]:
+        deepest = max(few, key=lambda place: place.count("."))
+        held = [place.rpartition(".")[0] if place == deepest else place for place in held]
+    found: dict[str, list[Entry]] = {"": []}
+    for entry, place in zip(rows, held, strict=True):
+        found.setdefault(place, []).append(entry)
+    return found
+
+
+def listing_of(schema: Schema, rows: list[Entry], heading: str = "") -> Iterator[str]:
+    """Yield the lines of a section: keys of the same kinds together, and sections inside it with many keys apart."""
+    rows = [entry for entry in rows if not entry.is_plain(schema)]
     kinds = list(dict.fromkeys(tuple(entry.kinds) for entry in rows))
     for group in kinds:
-        lines = [line for entry in rows if tuple(entry.kinds) == group and (line := listed(schema, entry)) is not None]
-        if len(kinds) > 1 and lines:
-            yield from (f"Kind {', '.join(group)}:" if group else "All kinds:", "")
-        if lines:
-            yield from (row("key", "meaning", "values", "default"), row("---", "---", "---", "---"), *lines, "")
+        alike = by_section([entry for entry in rows if tuple(entry.kinds) == group])
+        for place, lines in alike.items():
+            if not lines:
+                continue
+            if len(kinds) > 1:
+                kind = f"Kind {', '.join(group)}" if group else "All kinds"
+                yield from (f"{kind}, in `{place}`:" if place else f"{kind}:", "")
+            elif place:
+                yield from (f"### {heading}.{place}", "")
+            yield from (row("key", "meaning", "values", "default"), row("---", "---", "---", "---"))
+            yield from (*(listed(schema, entry, place) for entry in lines), "")
 
 
 def page() -> str:
@@ -303,8 +339,8 @@ def page() -> str:
     lines += ["## Top level", "", *listing_of(schema, alone)]
     for top, tables in tops:
         text = described(schema, top.schema)
-        listed = " A list; these are the keys of an entry." if top.schema.get("type") == "array" else ""
-        listed = " By name; these are the keys of an entry." if "additionalProperties" in top.schema else listed
+        listed = " Keys of each entry:" if top.schema.get("type") == "array" else ""
+        listed = " By name; keys of each:" if "additionalProperties" in top.schema else listed
         need = " Required." if top.required else ""
         for number, rows in enumerate(tables):
             if number == 0:
@@ -313,7 +349,8 @@ def page() -> str:
                 place = rows[0].keys[0].path.rpartition(" (kind")[0]
                 place = re.sub(r" \(kind: \w+\)", "", place)
                 lines += [f"### {place}", ""]
-            lines += [*example_of(top.path if number == 0 else place), *listing_of(schema, rows)]
+            place = top.path if number == 0 else place
+            lines += [*example_of(place), *listing_of(schema, rows, place)]
     lines += [RANGES_TEXT, *ranges(schema), "", CATALOGUES_TEXT, *catalogues()]
     return "\n".join(lines).rstrip() + "\n"
 
@@ -338,9 +375,21 @@ def catalogues() -> Iterator[str]:
     yield row("key", "word", "stands for", "source")
     yield row("---", "---", "---", "---")
     for key, words in CATALOGUE.items():
+        held = [entry.keys for entry in words.values()]
+        alike = {
+            name: value
+            for name, value in held[0].items()
+            if len(held) > 1 and all(name in one and one[name] == value for one in held)
+        }
+        yield from ([row(f"`{PLACES_OF_WORDS[key]}`", "all", written_keys(alike), "")] if alike else [])
         for word, entry in words.items():
-            keys = "; ".join(f"`{name}: {written_text(value)}`" for name, value in entry.keys.items())
-            yield row(f"`{PLACES_OF_WORDS[key]}`", f"`{word}`", keys, entry.source)
+            own = {name: value for name, value in entry.keys.items() if name not in alike}
+            yield row(f"`{PLACES_OF_WORDS[key]}`", f"`{word}`", written_keys(own), entry.source)
+
+
+def written_keys(keys: Mapping[str, Any]) -> str:
+    """Return keys and values as a file writes them."""
+    return "; ".join(f"`{name}: {written_text(value)}`" for name, value in keys.items())
 
 
 if __name__ == "__main__":

@@ -16,20 +16,20 @@ DAMAGE_COLUMNS = (
     Column("gear", pa.string(), "", "gear with the damage; none for damage that is on no gear"),
     Column("tooth", pa.int32(), "", "index of the tooth; -1 for all teeth of its gear, or none"),
     Column("kind", pa.string(), "", "what the damage is"),
-    Column("shape", pa.string(), "", "outline on the flank: ellipse, rectangle, polygon or none"),
+    Column("shape", pa.string(), "", "ellipse, rectangle, polygon or none"),
     Column(
         "height_mm",
         pa.float64(),
         MILLIMETRE,
-        "centre above the base circle along the tooth's axis; of a polygon the middle of its range",
+        "centre above the base circle along the tooth's axis",
     ),
     Column("face_mm", pa.float64(), MILLIMETRE, "centre across the face, from the face's edge"),
-    Column("semi_axis_face_mm", pa.float64(), MILLIMETRE, "semi-axis across the face; of a polygon half its range"),
+    Column("semi_axis_face_mm", pa.float64(), MILLIMETRE, "half the length across the face"),
     Column(
         "semi_axis_profile_mm",
         pa.float64(),
         MILLIMETRE,
-        "semi-axis along the tooth's axis; of a polygon half its range",
+        "half the length along the tooth's axis",
     ),
     Column("face_width_mm", pa.float64(), MILLIMETRE, "of the damaged gear; 0 where damage is on none"),
     Column("pitch_height_mm", pa.float64(), MILLIMETRE, "of its pitch circle, as height_mm"),
@@ -51,8 +51,7 @@ EDGE_COLUMNS = (
         "strip_depth_mm",
         list_of(pa.float64()),
         MILLIMETRE,
-        "depth between neighbouring corners of the lower edge, which come first and ascend across the face; "
-        "empty: depth_mm everywhere",
+        "depth between neighbouring corners of the lower edge, which come first; empty: depth_mm everywhere",
     ),
 )
 """More columns of `damage.parquet` in sets whose damage has edges of its own."""

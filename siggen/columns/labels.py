@@ -101,10 +101,10 @@ def manufacture_columns(gearbox: Specimen) -> tuple[Column, ...]:
     gears = gearbox.names.first.gears
     of_gears = (of_gear(column, gear) for gear in gears for column in error_columns(made))
     waves = (of_gear(column, gear) for gear in gears for column in wave_columns(made))
-    lead = "distance of the flanks at the far end of the face when they touch at the near one; its sign is the end"
+    lead = "gap of the flanks at one end of the face when they touch at the other; its sign is the end"
     return in_role(
         Role.PROVENANCE,
-        Column("manufacture_draw", pa.string(), "", "whether states share the specimen's gears: specimen or state"),
+        Column("manufacture_draw", pa.string(), "", "whether states share their gears: specimen or state"),
         *of_gears,
         Column("lead_misalignment_um", pa.float64(), MICROMETRE, lead),
         *waves,
@@ -159,7 +159,7 @@ def manufacture_of_others(made: MadeWith) -> tuple[Column, ...]:
 
 
 STATE_COLUMNS = (
-    Column("fault", pa.string(), "", "what the state is called: healthy, or by its kind of damage"),
+    Column("fault", pa.string(), "", "healthy, or the word of its damage"),
     Column("severity", pa.string(), "", "healthy, slight, moderate, severe, or a name of the configuration"),
 )
 DAMAGE_COLUMNS = (
@@ -168,7 +168,7 @@ DAMAGE_COLUMNS = (
         "damaged_area_mm2",
         pa.float64(),
         "mm^2",
-        "area along the flank of the union of all outlined damage, all teeth; 0 for cracks, wear and bearings",
+        "area along the flanks of all outlined damage together; 0 for cracks, wear and bearings",
     ),
     Column("damaged_area_share", pa.float64(), "", "damaged share of the most damaged flank"),
     Column("damage_face_length_mm", pa.float64(), MILLIMETRE, "longest single damage across the face"),
@@ -180,15 +180,12 @@ DAMAGE_COLUMNS = (
         "mesh_stiffness_loss",
         pa.float64(),
         "",
-        "largest relative loss of mesh stiffness against healthy by potential energy: a pair without contact length "
-        "carries nothing; a measure of the damage alone, also where the simulation lets flanks sink instead; 0 for "
-        "wear, which takes neither section nor contact length: see mesh_stiffness_loss_as_simulated",
+        "largest relative loss of mesh stiffness by potential energy, whatever the simulated law: a pair "
+        "without contact length carries nothing; 0 for wear",
         Role.CONSEQUENCE,
     ),
     Column("contact_loss_share", pa.float64(), "", "share of the time without tooth contact", Role.CONSEQUENCE),
-    Column(
-        "status", pa.string(), "", "ok; records that failed are in the manifest, not among the rows", Role.PROVENANCE
-    ),
+    Column("status", pa.string(), "", "ok; failed records stand in the manifest alone", Role.PROVENANCE),
     Column("through_face", pa.bool_(), "", "whether damage takes the whole contact length somewhere"),
     Column(
         "sink_depth_um",
@@ -201,8 +198,7 @@ DAMAGE_COLUMNS = (
         "mesh_stiffness_loss_as_simulated",
         pa.float64(),
         "",
-        "largest relative loss of force over approach at rest and at the record's torque, by the simulated law; "
-        "errors of single teeth are left out",
+        "largest relative loss of force over approach at rest and at the record's torque, by the simulated law",
         Role.CONSEQUENCE,
     ),
 )
@@ -212,7 +208,7 @@ OIL_TEMPERATURE = Column(
     "oil_temperature_c",
     pa.float64(),
     "°C",
-    "of the oil, as given or as losses have warmed it",
+    "of the oil, given or warmed by losses",
     Role.CONDITION,
     "dynamics",
 )
@@ -256,8 +252,8 @@ def columns_behind(names: Names) -> tuple[Column, ...]:
 
 HOUSING_COLUMNS = in_role(
     Role.PROVENANCE,
-    Column("housing_mass_kg", pa.float64(), "kg", "mass of the housing, without gears and shafts"),
-    Column("housing_first_mode_hz", pa.float64(), "Hz", "lowest mode of the housing above the six on its bolts"),
+    Column("housing_mass_kg", pa.float64(), "kg", "of the housing, without gears and shafts"),
+    Column("housing_first_mode_hz", pa.float64(), "Hz", "lowest mode above the six on its bolts"),
     section="housing",
 )
 """Columns of sets whose housings are drawn from their geometry."""
@@ -267,15 +263,15 @@ INTEGRATION_COLUMNS = in_role(
         "integration_error",
         pa.float64(),
         "",
-        f"estimated relative rms error of the simulated motion (of at least {STILL_M_S2:g} in SI units) by the steps "
-        "of integration, from a stretch of the record with twice as many, and by its start, from a later one; above "
-        "the set's tolerance where the finest steps do not suffice, inf where it diverges",
+        f"estimated relative rms error of the motion (of at least {STILL_M_S2:g} in SI units) by the steps of "
+        "integration and by its start; above the set's tolerance where the finest steps do not suffice, inf where it "
+        "diverges",
     ),
     Column(
         "integration_error_of",
         pa.string(),
         "",
-        "samples; or levels, over half a second at most, where teeth part and the motion depends on every rounding",
+        "samples; or levels, over half a second at most, where teeth part",
     ),
 )
 """Columns of sets of the law pairs."""
@@ -288,7 +284,7 @@ def variation_columns(names: Names) -> tuple[Column, ...]:
     return in_role(
         Role.CONDITION,
         Column("speed_std_hz", pa.float64(), HERTZ, speed),
-        Column("mean_torque_nm", pa.float64(), "N m", "mean of the motor's torque, what speeds the train up included"),
+        Column("mean_torque_nm", pa.float64(), "N m", "mean of the motor's torque"),
         Column("torque_std_nm", pa.float64(), "N m", "standard deviation of the motor's torque"),
         section="variation",
     )
@@ -328,7 +324,7 @@ VELOCITY = Column(
 )
 COUPLING = Column("coupling_force_{}_n", F64, "N", "once per turn, of the misaligned coupling on {}")
 MACHINE = Column(
-    "machine_force_n_per_sqrt_hz", F64, "N/sqrt(Hz)", "noise of the force of each machine beside, above its low corner"
+    "machine_force_n_per_sqrt_hz", F64, "N/sqrt(Hz)", "noise of the force of motor and load each, above its low corner"
 )
 
 

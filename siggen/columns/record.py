@@ -81,14 +81,14 @@ class RecordFailure:
 
 ID_COLUMNS = in_role(
     Role.KEY,
-    Column("record_id", pa.int64(), "", "index of the record in the plan; a pure function of the configuration"),
-    Column("specimen_id", pa.int64(), "", "gearbox the record belongs to; splits never share one"),
-    Column("state_id", pa.int32(), "", "position of the damage state in the configuration"),
-    Column("state", pa.string(), "", "name of the damage state", Role.TARGET),
+    Column("record_id", pa.int64(), "", "index of the record in the plan"),
+    Column("specimen_id", pa.int64(), "", "gearbox; splits never share one"),
+    Column("state_id", pa.int32(), "", "position of the state in the configuration"),
+    Column("state", pa.string(), "", "name of the state", Role.TARGET),
     Column(
         "operating_point_id", pa.int32(), "", "position of the operating point in the configuration", Role.CONDITION
     ),
-    Column("repeat", pa.int32(), "", "repeat of the same specimen, state and operating point"),
+    Column("repeat", pa.int32(), "", "repeat of the same gearbox, state and point"),
     Column("split", pa.string(), "", "train, validation or test"),
 )
 TACHO_COLUMN = Column(

@@ -49,8 +49,8 @@ class Machines(Section):
 
     density_n_per_sqrt_hz: Annotated[Number, Within(least=0, most=10_000), Usual(0.001, 50)] = Field(
         default=LogUniform(low=0.16, high=1.6),
-        description="one-sided, of each machine (derived: measured 3 to 7 mm/s²/√Hz from 40 to 80 Hz, times 75 to 325 "
-        "kg, over √2 for two machines)",
+        description="one-sided, of each machine (derived: 3 to 7 mm/s²/√Hz measured from 40 to 80 Hz, times "
+        "75 to 325 kg, over √2)",
     )
 
 
@@ -73,11 +73,11 @@ class ForeignMesh(Section):
     )
     force_share: Annotated[Number, Within(least=0, most=2), Usual(0.0001, 1)] = Field(
         default=LogUniform(low=0.005, high=0.05),
-        description="first line over the mean mesh force (derived: mesh 1 is 1 to 4 % of it, others "
-        "were measured 6 to 26 dB below mesh 1)",
+        description="first line over the mean mesh force (derived: mesh 1 is 1 to 4 %, others were measured 6 "
+        "to 26 dB lower)",
     )
     shaft_order: Annotated[Number | None, Within(above=0, most=10_000, words=(None,)), Usual(0.005, 100)] = Field(
-        default=None, description="turns of the sidebands' shaft per turn of the input shaft; null: the second shaft"
+        default=None, description="turns of the sidebands' shaft per input turn; null: the second shaft"
     )
 
 
@@ -85,7 +85,7 @@ class Background(Section):
     """A healthy machine around the gears; with this section, noise levels belong to the gearbox."""
 
     like: Annotated[str | None, CatalogueWord("background")] = Field(
-        default=None, description="word of the catalogue whose parts it takes over beside its own", exclude=True
+        default=None, description="word of the catalogue whose parts it takes over", exclude=True
     )
     base: BaseSection | None = Field(default=None, description="null: bolts stand on the ground")
     rubbing: Rubbing | None = Field(default=None, description="null: none")

@@ -45,7 +45,7 @@ MOST_SPECIMENS = 10_000_000
 MOST_REPEATS = 1_000_000
 
 
-SHARES = "of every 20 gearboxes (or pairs), for fitting, for choosing and for judging"
+SHARES = "of every 20 gearboxes or pairs: to fit, to choose, to judge"
 
 
 class Splits(Section):
@@ -56,7 +56,7 @@ class Splits(Section):
     test: Annotated[Whole, Field(ge=0)] = Field(default=4, description=SHARES)
     by: Literal["gearbox", "pair"] = Field(
         default="gearbox",
-        description="what splits never share; pair: gear pairs, so that test holds gears never seen",
+        description="what splits never share; pair: test holds gears never seen",
     )
 
     @model_validator(mode="after")
@@ -73,7 +73,7 @@ class OperatingRange(Section):
 
     speed_hz: Annotated[Number, Within(above=0, most=1e5)] = Field(description="rotation of the input shaft")
     torque_nm: Annotated[Number, Within(least=-1e8, most=1e8)] = Field(
-        description="torque on the input shaft; 0: idle, below 0: the load drives, on the back flanks"
+        description="on the input shaft; 0: idle, below 0: the load drives, on the back flanks"
     )
 
 
@@ -104,7 +104,7 @@ class Config(Section):
         default=1.0, description="length of a record"
     )
     mesh_harmonics: Annotated[Whole, Field(ge=1)] = Field(
-        default=5, description="highest mesh harmonic that the sampling rate must carry at the highest speed"
+        default=5, description="mesh harmonic that the sampling rate must carry at the highest speed"
     )
     repeats: Annotated[Whole, Field(ge=1, le=MOST_REPEATS)] = Field(
         default=1, description="records per state and operating point"
@@ -126,7 +126,7 @@ class Config(Section):
         default=(), description="conditions of health, in their order"
     )
     life: Life | None = Field(
-        default=None, description="null: `states`; given: gearboxes run until teeth fail, and `states` has no entry"
+        default=None, description="given: gearboxes run until teeth fail, and `states` has no entry"
     )
     sensors: Annotated[tuple[SensorSection, ...], Field(min_length=1), SENSORS] = Field(
         description="what measures; of kind accelerometer unless it says otherwise"
@@ -142,7 +142,7 @@ class Config(Section):
     )
     background: Annotated[
         Background | None, BeforeValidator(in_keys, json_schema_input_type=Background | str | None), BACKGROUND
-    ] = Field(default=None, description="what a healthy machine adds, or a word of the catalogue; null: nothing")
+    ] = Field(default=None, description="what a healthy machine adds, or a word of the catalogue")
 
     @field_serializer("states", "sensors")
     def _by_name(self, sections: tuple[Section, ...]) -> dict[str, Any]:

@@ -56,10 +56,7 @@ def oils_of(oil: OilValue) -> tuple[str, ...]:
 
 # Sections `dynamics.mesh` and `dynamics.friction`: how the teeth push and rub.
 
-DAMPING_PARTS = (
-    "parts of the mesh damping ratio with damping: asperity_share: always there, in a full oil film, where asperities "
-    "carry all"
-)
+DAMPING_PARTS = "parts with damping: asperity_share: always there, in a full oil film, where asperities carry all"
 
 
 class MeshSection(Section):
@@ -67,27 +64,27 @@ class MeshSection(Section):
 
     law: Literal["linear", "pairs"] = Field(
         default="pairs",
-        description="linear: mesh stiffness times approach, damage lowers the stiffness (paper A); pairs: every tooth "
-        "pair by itself, its contact solved across the face",
+        description="linear: mesh stiffness times approach (paper A); pairs: each tooth pair by itself, its "
+        "contact solved across the face",
     )
     tip_relief_um: Annotated[Number, Within(least=0)] = Field(
         default=8.0, description="parabolic relief at the tips of both gears"
     )
     tip_relief_pitches: Annotated[Number, Within(above=0, most=1), Usual(0.1, 0.8)] = Field(
-        default=0.25, description="length of that relief along the line of action, in base pitches"
+        default=0.25, description="its length along the line of action, in base pitches"
     )
     damage: Literal["all", "geometry"] = Field(
         default="all",
-        description="with law: pairs; geometry: lands carry, flanks sink where none is left, land beside it is "
-        "rough, up to its width and 0.5 mm; all: weaker sections too",
+        description="of law pairs; geometry: lands carry, flanks sink where none is left, neighbouring land "
+        "is rough; all: weaker sections too",
     )
     pit_edge_radius_mm: Annotated[Number, Within(least=0, most=1), Usual(0.005, 1)] = Field(
         default=0.1, description="rounding of the edges of damage (law: pairs)"
     )
     damping: Literal["constant", "asperity_share"] = Field(
         default="constant",
-        description="constant: mesh_damping_ratio; asperity_share: structure + film (1 - La) + asperities La with the "
-        "asperity share La of friction.model: mixed_ehl",
+        description="constant: mesh_damping_ratio; asperity_share: structure + film (1 - La) + asperities La, "
+        "with La of friction.model: mixed_ehl",
     )
     structure_damping_ratio: Annotated[Number, Within(least=0, most=0.5), Usual(0.002, 0.3)] = Field(
         default=0.04, description=DAMPING_PARTS
@@ -105,18 +102,15 @@ class Friction(Section):
 
     model: Literal["auto", "off", "constant", "mixed_ehl"] = Field(
         default="auto",
-        description="mixed_ehl: asperities and oil film share the load by speed, load and roughness; auto: mixed_ehl "
-        "with the law pairs, off with the law linear",
+        description="mixed_ehl: asperities and oil film share the load; auto: mixed_ehl with the law pairs, else off",
     )
     coefficient: Annotated[Number, Within(least=0, most=0.5), Usual(0.005, 0.3)] = Field(
         default=0.05, description="of the model constant"
     )
-    oil: Oil = Field(
-        default="ISO VG 220", description="mineral gear oil (mixed_ehl); a list: each gearbox draws one of them"
-    )
+    oil: Oil = Field(default="ISO VG 220", description="mineral gear oil (mixed_ehl); of a list each gearbox draws one")
     oil_temperature_c: Annotated[Number | None, Within(least=-20, most=150, words=(None,)), Usual(5, 120)] = Field(
         default=None,
-        description="at the inlet of the contact; null: what losses warm the oil to, up to 90, where a cooler holds it",
+        description="at the inlet of the contact; null: by the losses, up to 90, where a cooler holds it",
     )
     boundary_friction: Annotated[Number, Within(least=0, most=0.5), Usual(0.02, 0.3)] = Field(
         default=Uniform(low=0.07, high=0.11), description="friction coefficient of asperities, by the oil's additives"
@@ -126,7 +120,7 @@ class Friction(Section):
     )
     pit_roughness_um: Annotated[Number, Within(above=0, most=5), Usual(0.1, 5)] = Field(
         default=2.0,
-        description="rms, of a flank in damage and on the land beside it, up to its width and 0.5 mm (mixed_ehl)",
+        description="rms, in damage and on land up to its width and 0.5 mm from it (mixed_ehl)",
     )
 
 
@@ -142,7 +136,7 @@ class ShaftSection(Section):
         default=100.0, description="distance of the bearings; " + SIZED_TEXT
     )
     gear_position: Annotated[Number, Within(above=0, below=1)] = Field(
-        default=0.5, description="middle of the gear from one bearing, as a share of the span"
+        default=0.5, description="middle of the gear from one bearing over the span"
     )
     diameter_mm: Annotated[Number | None, Within(least=5, words=(None,))] = Field(
         default=25.0, description="of the shaft; " + SIZED_TEXT
@@ -166,7 +160,7 @@ class UnbalanceSection(Section):
 
     grade_mm_s: Annotated[Number, Within(least=0, most=100), Usual(0.05, 100)] = Field(
         default=0.0,
-        description="eccentricity times speed at 50 Hz of the input shaft; 2.5 and 6.3 are the grades G2.5 and G6.3",
+        description="eccentricity times speed at 50 Hz of the input shaft: 6.3 for G6.3",
     )
 
 
@@ -174,9 +168,8 @@ MACHINE = "of the machine that drives, or is driven"
 RATED = "rated_torque_nm"
 """Key from which the sizes follow that a file leaves out."""
 RATED_LOAD = (
-    "of the first shaft: masses, inertias, bearings, couplings and shafts that this file does not give "
-    "follow from it by the rules of `siggen init`; speed null: the highest operating point; torque null: "
-    "their own defaults"
+    "of the first shaft: masses, inertias, bearings, couplings and shafts left out follow from both; torque "
+    "null: own defaults, speed null: the highest"
 )
 RATED_SPEED, SIZING = "rated_speed_hz", "sizing"
 RATED_SPEED_TEXT = AllowedText("a number above 0 up to 1e+05, or null")
@@ -184,9 +177,8 @@ RATED_TEXT = AllowedText("a number above 0 up to 1e+06, or null")
 
 
 ACROSS = (
-    "stiffness and damping across the shaft, 2 to 7 % of critical for shafts of 3 to 0.3 kg; {each: [horizontal, "
-    "vertical]} gives one for each direction; damping_time_s: damping over stiffness at any load, in place of the "
-    f"other one; {SIZED_TEXT}"
+    "across the shaft, damping of 2 to 7 % of critical for shafts of 3 to 0.3 kg; {each: [horizontal, vertical]}: one "
+    f"for each; damping_time_s: damping over stiffness at any load, in place of damping; {SIZED_TEXT}"
 )
 
 
@@ -210,8 +202,8 @@ class BearingSection(Section):
     )
     geometry: BallGeometry | None = Field(
         default=None,
-        description="null: the stiffness above (damage is in one of the defaults); given: two such ball bearings, "
-        "whose stiffness follows load and clearance",
+        description="given: two such ball bearings, whose stiffness follows load and clearance; null: the "
+        "stiffness above",
     )
 
     @model_validator(mode="before")
@@ -238,22 +230,21 @@ class RotorSection(Section):
 
     mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None,
-        description="null: a solid steel disc of the pitch circle with its bore; with rated_torque_nm, its shaft too",
+        description="null: a steel disc of the pitch circle with its bore; with rated_torque_nm, its shaft too",
     )
     inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="about the shaft; null: of the same disc"
     )
     eccentricity_um: Annotated[Number, Within(least=0, most=200), Usual(0.5, 200)] = Field(
         default=0.0,
-        description="of the gear's axis from its shaft's, beside what its accuracy class allows; needs manufacture",
+        description="of the gear's axis from its shaft's, added to what its accuracy class allows; needs manufacture",
     )
     bearing: BearingSection = Field(default=BearingSection(), description="what its shaft turns in")
 
 
 CHOSEN = (
-    "design torque over rated_torque_nm; shear at shaft ends; shaft length over bearing distance; series "
-    "of ball bearings, another or rollers where balls do not last 20,000 h or fit; radial play, below 0 "
-    "preload; damping over stiffness"
+    "what makers choose: design over rated torque; shear at shaft ends; shaft length over bearing distance; "
+    "series of ball bearings, if they fit; radial play, below 0 preload; damping over stiffness"
 )
 
 
@@ -313,17 +304,17 @@ class Dynamics(Section):
     """The gearbox as a system of rigid bodies on springs."""
 
     model: Literal["8dof", "casing"] = Field(
-        default="casing", description="which bodies move; 8dof: gears, motor and load, casing: the `housing` too"
+        default="casing", description="which bodies move; 8dof: gears, motor, load; casing: the `housing` too"
     )
     steps_per_sample: Annotated[Whole, Field(ge=1, le=256)] = Field(
-        default=4, description="integration steps per sample with the law linear"
+        default=4, description="integration steps per sample (law: linear)"
     )
     integration_tolerance: Annotated[float, Field(ge=1e-5, le=1e-2)] = Field(
         default=1e-3,
-        description="relative rms error of the signals that steps are chosen for with the law pairs",
+        description="relative rms error of the signals, by which steps are chosen (law: pairs)",
     )
     mesh_damping_ratio: Annotated[Number, Within(least=0, below=1), Usual(0.005, 0.3)] = Field(
-        default=0.07, description="damping of the teeth in contact, as a share of the critical one"
+        default=0.07, description="damping of the teeth in contact over the critical one"
     )
     backlash_um: Annotated[Number, Within(least=0)] = Field(
         default=80.0, description="total play along the line of action"
@@ -338,7 +329,7 @@ class Dynamics(Section):
     friction: Friction = Field(default=Friction(), description="how the teeth rub")
     unbalance: UnbalanceSection = Field(default=UnbalanceSection(), description="forces of shafts out of balance")
     shafts: Shafts | None = Field(
-        default=None, description="null: gears stay parallel; with model: casing, shafts that bend and gears that tilt"
+        default=None, description="given, with model: casing: shafts bend and gears tilt; null: gears stay parallel"
     )
     rated_torque_nm: Annotated[float | None, Field(gt=0, le=1e6), RATED_TEXT] = Field(
         default=None,

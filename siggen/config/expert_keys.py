@@ -29,7 +29,7 @@ def schema_with_experts() -> dict[str, Any]:
     schema = Config.model_json_schema(mode="validation")
     schema["properties"][EXTENDS] = {
         "type": "string",
-        "description": "preset or file whose values hold wherever this file gives none",
+        "description": "preset or file whose values hold where this file gives none",
     }
     used = keys_of_presets()
     for name, found in ((Config.__name__, schema), *schema.get("$defs", {}).items()):

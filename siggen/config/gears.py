@@ -50,7 +50,7 @@ class DrawnPairs(Section):
     count: Annotated[Whole, Field(ge=1, le=1000)] = Field(description="number of pairs")
     pinion_teeth: Annotated[Number, Within(least=5, most=1000)] = Field(description="rounded to a whole number")
     ratio: Annotated[Number, Within(least=0.1, most=20)] = Field(
-        description="teeth of the gear over the pinion's; moved to the nearest number without a common divisor"
+        description="teeth of the gear over the pinion's, moved until they share no divisor"
     )
     module_mm: Annotated[Number, Within(above=0)] = Field(description="normal module")
     face_width_over_module: Annotated[Number, Within(above=0, most=100)] = Field(
@@ -141,8 +141,8 @@ class ToothForm(Section):
     )
     helix_deg: Annotated[Number, Within(least=-45, most=45), Usual(1, 45)] = Field(
         default=0.0,
-        description="on the pitch cylinder, positive: right-handed driving gear; modules, coefficients and "
-        "pressure angle are those of the normal section",
+        description="on the pitch cylinder, positive: right-handed driving gear; tooth sizes are those of the "
+        "normal section",
     )
     face_width_mm: Annotated[Number, Within(above=0)] = Field(description="width of the teeth in contact")
     youngs_modulus_gpa: Annotated[Number, Within(above=0)] = Field(
@@ -171,7 +171,7 @@ class GearsSection(Pair):
 
     pairs: Annotated[Pairs, PAIRS] = Field(
         default=(),
-        description="one for each gearbox; other numbers are carried over from the pair above; null: no other pairs",
+        description="one for each gearbox; other numbers are carried over from the pair above",
     )
 
     def teeth_of(self, which: str) -> tuple[int, ...]:

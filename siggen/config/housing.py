@@ -20,11 +20,11 @@ from siggen.keys.usual import Usual
 
 Length = Annotated[Number | None, Within(above=0, most=10_000, words=(None,))]
 INSIDE = (
-    "inside, across, upright and along the shafts; null: clearances of 10 to 26 % of the centre distance "
-    "at either end, 15 to 31 % above, a sump of 26 to 62 %; as wide as the bearings need"
+    "inside, across, upright, along the shafts; null: in centre distances, 0.10 to 0.26 clear at either end, "
+    "0.15 to 0.31 above, a sump of 0.26 to 0.62; width by the bearings"
 )
 EACH = "of each, horizontal (shear) and vertical (axial)"
-FOOT = "what one foot has left of its stiffness: that beside the driver, behind, or the first bolt of a rigid housing"
+FOOT = "what one foot has left of its stiffness: beside the driver, behind, or the first bolt of a rigid housing"
 
 
 class PlateHousing(Section):
@@ -41,8 +41,8 @@ class PlateHousing(Section):
     width_mm: Length = Field(default=None, description=INSIDE)
     wall_mm: Length = Field(
         default=None,
-        description="of the plates with the bearings; null: 1.1 to 3 times 3 mm + 2.5 % of the centre distance, welded "
-        "1.5 to 4.6 times",
+        description="of the plates with the bearings; null: 1.1 to 3 times 3 mm + 0.025 centre distances, "
+        "welded 1.5 to 4.6 times",
     )
     damping_ratio: Annotated[Number, Within(above=0, below=0.5), Usual(0.0005, 0.2)] = Field(
         default=LogUniform(low=0.003, high=0.05), description="of the plates, drawn for each mode"
@@ -79,8 +79,8 @@ class RigidHousing(Section):
     mass_kg: Annotated[Number, Within(above=0)] = Field(default=20.0, description="without the gears and shafts")
     inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=0.25,
-        description="about its centre of gravity; null: the mass times the square of 1.15 centre distances, or of the "
-        "rim's radius of a planetary set (derived)",
+        description="about its centre of gravity; null: a radius of gyration of 1.15 centre distances, or of "
+        "a planetary rim (derived)",
     )
     bolts: BoltsSection = Field(default=BoltsSection(), description="between casing and ground")
     loose_foot_share: Annotated[Number, Within(above=0, most=1), Usual(0.01, 1)] = Field(default=1.0, description=FOOT)
@@ -90,9 +90,7 @@ class ModalHousing(Section):
     """A housing by natural modes from finite elements or a modal test; all gearboxes have the same."""
 
     kind: Literal["modal"] = Field(description="a body whose modes are known")
-    modes: str = Field(
-        description="CSV file, a line per mode, from the folder of the configuration; its content takes its place"
-    )
+    modes: str = Field(description="CSV file from the folder of the configuration, a line per mode")
 
 
 def with_kind(section: Any) -> Any:

@@ -53,7 +53,7 @@ class Life(Section):
         description="torque on the input shaft to which the law's turns belong"
     )
     scale: Annotated[Number, Within(above=0, most=1e6), Usual(0.01, 20)] = Field(
-        default=1.0, description="all times of the law are this much longer; drawn for each gearbox"
+        default=1.0, description="factor on all times of the law, drawn for each gearbox"
     )
     history: tuple[Block, ...] = Field(
         default=(),
@@ -65,7 +65,7 @@ class Life(Section):
     most: Annotated[Whole, Field(ge=2, le=1000)] = Field(description="inspections of a gearbox at most")
     removed_share: Annotated[Real, Field(ge=0, le=1), Usual(0.005, 1)] = Field(
         default=0.15,
-        description="chance that a gearbox is taken out at an age drawn between 0 and the last inspection",
+        description="chance that a gearbox is taken out at an age drawn up to the last inspection",
     )
 
     @property

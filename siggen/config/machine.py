@@ -55,8 +55,8 @@ class MachineShaft(NamedPart, RotorSection):
 
     span_mm: Span = Field(
         default=None,
-        description="between bearings of a shaft with two gears, at its thirds; idler: one gear in two meshes; "
-        "null: twice both face widths (assumed)",
+        description="between bearings of a shaft with two gears; idler: one gear in two meshes; null: twice "
+        "both face widths (assumed)",
     )
 
     @model_validator(mode="after")
@@ -80,7 +80,7 @@ class MachineMesh(NamedPart, ToothForm):
     driven: str = Field(description="name of the driven gear")
     direction_deg: Direction = Field(
         default=0.0,
-        description="of the line of centres against that of the first mesh, in the sense of the first shaft",
+        description="of the line of centres against that of the first mesh, as the first shaft turns",
     )
 
 

@@ -13,11 +13,8 @@ from siggen.keys.problems import refusal
 from siggen.keys.section import Section
 from siggen.keys.usual import Usual
 
-CLASS = "of ISO 1328-1: a whole number, or {one_of: [a, b]}; driven gear, null: drawn like the driver's, for itself"
-CROWNING = (
-    "lead crowning: what a parabola takes at both ends of the face; driven gear, null: drawn like the "
-    "driver's, for itself"
-)
+CLASS = "of ISO 1328-1, a whole number or {one_of: [a, b]}; driven null: by the law of the driver"
+CROWNING = "lead crowning, a parabola: what both ends of the face miss; driven null: by the law of the driver"
 
 
 class Manufacture(Section):
@@ -41,23 +38,21 @@ class Manufacture(Section):
     )
     helix: Literal["off", "iso_1328"] = Field(
         default="off",
-        description="iso_1328: helix slope and form of each gear within tolerance_share of its class",
+        description="iso_1328: slope and form of each gear within tolerance_share of its class",
     )
     lead_misalignment_um: Annotated[Number | str, Within(least=0, most=500, words=("iso_1328",)), Usual(0.1, 100)] = (
         Field(
             default=0.0,
-            description="gap of the flanks at one end of the face, either end; iso_1328: what helix slopes make",
+            description="gap of the flanks at either end of the face; iso_1328: by the helix slopes",
         )
     )
     flank_waves: Literal["off", "on"] = Field(
         default="off",
-        description="waves over all teeth (ghosts, chuck), and forms of teeth that fall with their order; part of "
-        "no tolerance, no other label",
+        description="waves over all teeth (ghosts, chuck) and forms of teeth; part of no tolerance or other label",
     )
     draw: Literal["specimen", "state"] = Field(
         default="specimen",
-        description="specimen: one gear pair in all states, as on a rig; state: another pair for each, as in a "
-        "field of machines",
+        description="specimen: one gear pair in all states, as on a rig; state: another pair for each",
     )
 
     @model_validator(mode="after")

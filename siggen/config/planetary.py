@@ -25,8 +25,8 @@ NAMES = {role: name for name, role in ROLES.items()}
 POSITIONS = AllowedText("a list of 3 to 5 angles in degrees, 0 first, ascending, below 360")
 
 SUPPORTS = (
-    "bearings of the sun's shaft (soft: it floats), pin and bearing of each planet, hold of the ring, bearings of the "
-    "carrier"
+    "bearings of the sun's shaft (soft: it floats), of each planet with its pin, hold of the ring, bearings "
+    "of the carrier"
 )
 
 
@@ -41,12 +41,11 @@ class Planetary(Section):
     ring_teeth: Annotated[Whole, Field(ge=8, le=1000)] = Field(description="number of teeth of the ring")
     positions_deg: Annotated[tuple[Real, ...], Field(min_length=1, max_length=9), POSITIONS] = Field(
         default=(0.0, 120.0, 240.0),
-        description="where planets stand on the carrier, in its sense of turning; the nearest place at which teeth"
-        " fit counts",
+        description="of planets on the carrier, as it turns; the nearest place where teeth fit counts",
     )
     pin_error_um: Annotated[Number, Within(least=0, most=200), Usual(0.1, 200)] = Field(
         default=0.0,
-        description="standard deviation of the place of each planet's pin along the tangent, drawn per gearbox",
+        description="standard deviation of the tangential place of each planet's pin, drawn per gearbox",
     )
     sun_stiffness_n_per_m: Annotated[Number, Within(above=0), Usual(100000, 1e09)] = Field(
         default=2e7, description=SUPPORTS

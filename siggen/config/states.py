@@ -39,17 +39,16 @@ class StateSection(Section):
 
     name: StateName = Field(description="label of the state")
     fault: Annotated[str, Field(pattern=f"^{WORD}$"), FAULT] = Field(
-        description="default: what its kind of damage is called; healthy without damage and changes"
+        description="default: the word of its damage; healthy without damage and changes"
     )
     severity: StateName = Field(description="default: the state's name; healthy without damage")
     grows: str | None = Field(
         default=None,
-        description="milder state whose damage it contains, and whose keys it takes over beside its own; null: it "
-        "begins anew",
+        description="milder state whose damage it contains, and whose keys it takes over; null: it begins anew",
     )
     like: str | None = Field(
         default=None,
-        description="name of a state whose keys it takes over beside its own, without growing from it",
+        description="state whose keys it takes over without growing from it",
         exclude=True,
     )
     damage: Annotated[DamageSections | None, DAMAGE] = Field(
@@ -58,13 +57,12 @@ class StateSection(Section):
     acts: bool = Field(
         default=True,
         strict=True,
-        description="false: a sham: damage is drawn, tabulated and passed on with nothing removed, a healthy state"
-        " that no record may give away",
+        description="false: a sham: damage is drawn and tabulated, but nothing is removed",
     )
 
     changes: Changes = Field(
         default=(),
-        description="keys of machine or sensors that differ from the healthy gearbox: a number instead, times or plus",
+        description="keys of machine or sensors that differ from the healthy gearbox: a number, times or plus",
         json_schema_extra={"default": {}},
     )
 

@@ -14,15 +14,12 @@ class Stiffness(Section):
 
     beam: Literal["base_circle", "root_circle", "rack_trochoid", "calibrated"] = Field(
         default="calibrated",
-        description=(
-            "where the tooth's cantilever begins, or calibrated: rack_trochoid and its gear body, scaled to finite "
-            "elements"
-        ),
+        description=("where the tooth's cantilever begins; calibrated: rack_trochoid, scaled to finite elements"),
     )
     coupling: Literal["none", "body", "auto"] = Field(
         default="auto",
-        description="neighbouring teeth: none: the plain sum of pairs (paper A); body: they deflect each other "
-        "through it; auto: body for calibrated, else none",
+        description="body: neighbouring teeth deflect each other; none: the plain sum of pairs (paper A); "
+        "auto: body for calibrated, else none",
     )
 
     @property

@@ -14,9 +14,9 @@ from siggen.keys.usual import Usual
 RARE = 4.0
 """Standard deviations that a slow random part hardly ever leaves; the band must carry the speed up to there."""
 
-RAMP = "speed at the first and last sample over the operating point's; linear between (run-up, run-down)"
-RANDOM = "slow random part, relative; usual are 0.001 to 0.005 of speeds, 0.01 to 0.05 of torques"
-RIPPLE = "amplitude once per revolution, and twice, relative; 0.0002 to 0.001 is usual"
+RAMP = "speed at the first and last sample over the operating point's, linear between"
+RANDOM = "slow random part, relative; usual: 0.001 to 0.005 of speed, 0.01 to 0.05 of torque"
+RIPPLE = "amplitude once and twice per revolution, relative; usual: 0.0002 to 0.001"
 
 
 class SpeedVariation(Section):
@@ -35,8 +35,8 @@ class SpeedVariation(Section):
     )
     slip: Annotated[Number, Within(least=0, most=0.2), Usual(0.001, 0.2)] = Field(
         default=0.0,
-        description="share of the speed that the motor loses at dynamics.rated_torque_nm, or else at the largest "
-        "torque; in proportion to the torque",
+        description="of the motor at dynamics.rated_torque_nm, or else at the largest torque; in proportion "
+        "to the torque",
     )
 
 
@@ -47,10 +47,10 @@ class TorqueVariationSection(Section):
         default=0.0, description=RANDOM
     )
     load_once: Annotated[Number, Within(least=0, most=2), Usual(0.0002, 0.4)] = Field(
-        default=0.0, description="amplitude of the load torque once per revolution of its shaft, relative"
+        default=0.0, description="of the load torque once per revolution of its shaft, relative"
     )
     line_ripple: Annotated[Number, Within(least=0, most=2), Usual(0.0002, 0.5)] = Field(
-        default=0.0, description="amplitude of the motor torque at twice the line frequency of 50 Hz, relative"
+        default=0.0, description="of the motor torque at twice the line frequency of 50 Hz, relative"
     )
 
 
@@ -58,7 +58,7 @@ class Variation(Section):
     """What varies within a record; nothing by default."""
 
     like: Annotated[str | None, CatalogueWord("variation")] = Field(
-        default=None, description="word of the catalogue whose numbers it takes over beside its own", exclude=True
+        default=None, description="word of the catalogue whose numbers it takes over", exclude=True
     )
     speed: SpeedVariation = Field(default=SpeedVariation(), description="rotation of the input shaft")
     torque: TorqueVariationSection = Field(default=TorqueVariationSection(), description="torque of motor and load")

@@ -22,7 +22,7 @@ class BallGeometry(Section):
     pitch_diameter_mm: Annotated[Number, Within(above=0), Usual(3, 1500)] = Field(default=39.04, description=DIAMETERS)
     clearance_um: Annotated[Number, Within(least=-100, most=1000), Usual(-20, 200)] = Field(
         default=10.0,
-        description="radial play from side to side in running; it narrows the zone of load; below 0: preload",
+        description="radial play in running, which narrows the zone of load; below 0: preload",
     )
 
     def bearing(self) -> BallBearing:

@@ -169,7 +169,7 @@ class BearingSpalls(Fault):
     kind: Literal["bearing_spall"] = "bearing_spall"
     bearing: Annotated[str, BEARING_TEXT] = Field(
         default="pinion_bearing",
-        description="one of the two on that shaft: pinion_bearing, gear_bearing, of a machine SHAFT_bearing",
+        description="one of the two there: pinion_bearing, gear_bearing, of a machine SHAFT_bearing",
     )
     element: Literal["outer", "inner", "ball"] = Field(description="the spalled race, or a ball")
     length_mm: Annotated[Number, Within(above=0), Usual(0.1, 30)] = Field(description="along the path of the balls")

@@ -372,10 +372,10 @@ class ChippedTeeth(Fault):
     gear: AnyGear = Field(default=PINION, description=DAMAGED_GEAR)
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
     height_mm: Annotated[Number | Literal["whole"], Within(above=0, words=(WHOLE,)), Usual(0.05, 30), Grows(MODULE)] = (
-        Field(description="height lost from the tip down, along the radius; whole: the tooth is gone")
+        Field(description="lost from the tip down, along the radius; whole: the tooth is gone")
     )
     face_share: Annotated[Number | None, Within(above=0, most=1, words=(None,)), Usual(0.01, 1)] = Field(
-        default=None, description="share of the face that has lost it, from one end; null: the whole face"
+        default=None, description="share of the face that lost it, from one end; null: the whole face"
     )
 
     @classmethod

@@ -196,16 +196,14 @@ class RootCracks(Fault):
     gear: AnyGear = Field(default=PINION, description=DAMAGED_GEAR)
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
     depth_share: Annotated[Number, Within(above=0, most=DEEPEST_SHARE), Usual(0.02, 0.5)] = Field(
-        description="largest depth along the crack over the chord between the 30 degree tangents of the root (ISO "
-        "6336-3)"
+        description="depth along the crack over the chord between the 30 degree tangents (ISO 6336-3)"
     )
     angle_deg: Annotated[Number, Within(least=LEAST_DEG, most=MOST_DEG)] = Field(
-        default=45.0, description="between the crack and the tooth's centre line; it runs straight into the body"
+        default=45.0, description="from the tooth's centre line, straight into the body"
     )
     face_share: Annotated[Number | None, Within(above=0, most=LONGEST_RUN, words=(None,)), Usual(0.01, 1)] = Field(
         default=None, description=(
-            "where the depth, falling from one end, is 0, over the face width; null: the same depth "
-            "everywhere"
+            "where the depth, falling from one end, is 0, over the face width; null: nowhere"
         ),
     )  # fmt: skip
 

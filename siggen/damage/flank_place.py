@@ -33,8 +33,7 @@ AnyGear: TypeAlias = Annotated[str, Field(pattern=rf"^{PART}(\.{PART})?$"), GEAR
 """`either`: drawn per gearbox, the same for all of its states."""
 
 DAMAGED_GEAR = (
-    "damaged gear: pinion, gear, either (drawn); of a machine its name or MESH.either; of a planetary set "
-    "sun, ring, planet (the first)"
+    "damaged gear: pinion, gear, either (drawn); of a machine NAME or MESH.either; sun, ring, planet (the first)"
 )
 
 HeightReading: TypeAlias = Literal["axial", "radial", "arc"]
@@ -51,14 +50,14 @@ PlaceOnFace = Annotated[Number | None, Within(least=0, words=(None,)), Grows(FAC
 
 FloorShape: TypeAlias = Literal["flat", "dish"]
 
-READING = "how heights and lengths along the profile are measured: along the tooth's axis, the radius, the flank"
+READING = "how heights and profile lengths are measured: along the tooth's axis, the radius, the flank"
 MIDDLE_HEIGHT = (
-    "of the middle above the base circle, or pitch; irregular spalls also below_pitch: half way from the "
-    "lowest point of single contact"
+    "of the middle above the base circle; below_pitch: half way from the lowest point of single contact to "
+    "the pitch point"
 )
 FACE_CENTRE = "middle across the face; null: of the face"
 PROFILE_LENGTH = "length along the profile; of irregular spalls the mean"
-DEPTH = "depth normal to the tooth's middle plane; of irregular spalls null: 0.05 of the root of both lengths (assumed)"
+DEPTH = "normal to the tooth's middle plane; of irregular spalls null: 0.05 of the root of both lengths (assumed)"
 FLOOR = "flat floor, or a dish that is deepest in the middle"
 
 MM = 1e-3

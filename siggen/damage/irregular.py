@@ -307,13 +307,13 @@ class IrregularSpalls(Fault):
     face_centre_mm: PlaceOnFace = Field(default=None, description=FACE_CENTRE)
     skew_mm_per_10mm: Skew = Field(
         default=Uniform(low=-0.15, high=0.15),
-        description="rise of an edge towards the tip over 10 mm of face, in mm of arc, drawn for each edge (assumed)",
+        description="rise of each edge towards the tip, mm of arc over 10 mm of face (assumed)",
     )
     waviness: Annotated[Number, Within(least=0, most=0.2), Usual(0.002, 0.2)] = Field(
-        default=0.1, description="rms of either edge's waves over the profile length; the default is assumed"
+        default=0.1, description="rms of each edge's waves over the profile length (default assumed)"
     )
     edge_radius_mm: Annotated[Number, Within(least=0, most=1), Usual(0.002, 1), Grows(MODULE)] = Field(
-        default=Uniform(low=0.02, high=0.2), description="radius of the edges; the default is assumed"
+        default=Uniform(low=0.02, high=0.2), description="radius of the edges (default assumed)"
     )
     depth_mm: OptionalLength = Field(
         default=None,
@@ -547,10 +547,9 @@ class ListedIrregular(Section):
     gear: AnyGear = Field(default=PINION, description="damaged gear")
     tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
     edges_mm: Annotated[tuple[EdgePoint, ...], Field(min_length=2)] = Field(
-        description="place across the face, heights of the lower and the upper edge above the base circle; ascending "
-        "across the face"
+        description="[place across the face, ascending; heights of lower and upper edge above the base circle]"
     )
-    depth_mm: Annotated[Real, Field(gt=0)] = Field(description="depth normal to the tooth's middle plane")
+    depth_mm: Annotated[Real, Field(gt=0)] = Field(description="normal to the tooth's middle plane")
     edge_radius_mm: Annotated[Real, Field(ge=0, le=1)] = Field(description="radius of the edges")
 
     def spall(self, pair: GearPair, reading: str) -> IrregularSpall:

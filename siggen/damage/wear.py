@@ -50,7 +50,7 @@ class FlankWear(Fault):
 
     kind: Literal["wear"] = "wear"
     depth_um: Annotated[Number, Within(above=0), Usual(0.5, 500), Grows(MODULE)] = Field(
-        description="largest depth on any flank, usually at the root of the pinion"
+        description="largest on any flank, mostly at the root of the pinion"
     )
 
     def hit_teeth(self) -> HitTeeth:

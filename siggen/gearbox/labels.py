@@ -16,7 +16,7 @@ from siggen.keys.number import constant
 from siggen.sensors.sensor import SensorBase
 
 Labels: TypeAlias = Mapping[Column, object]
-SHAM = Column("sham", pa.bool_(), "", "whether its damage was drawn and passed on with nothing removed", Role.TARGET)
+SHAM = Column("sham", pa.bool_(), "", "whether its damage was drawn, but nothing removed", Role.TARGET)
 CHANGED = Column(
     "changed_keys",
     list_of(pa.string()),
@@ -84,7 +84,7 @@ def gearbox_labels(config: Config, specimen_id: int, pair: GearPair, oil: str, s
         word = config.names.first.gear(side).word
         meaning = f"both bearings of the shaft of {word}, by their name in catalogues"
         labels[replace(BEARING, name=f"bearing_{word}", meaning=meaning)] = bearing.designation
-        meaning = "radial play of each of them in running; below 0: preload; 0 of rollers, which have none here"
+        meaning = "radial play in running; below 0: preload; 0 of rollers"
         play_um = 0.0 if bearing.rollers else clearance_um
         labels[replace(CLEARANCE, name=f"bearing_clearance_{word}_um", meaning=meaning)] = play_um
     for law, sensor in zip(config.sensors, sensors, strict=True):

@@ -86,7 +86,7 @@ class Uniform(_Written):
 
 
 class LogUniform(_Written):
-    """Every ratio equally likely: the logarithm is uniform between those of `low` and `high`, both above 0."""
+    """Every ratio equally likely: the logarithm is uniform; `low` is above 0."""
 
     form: ClassVar[str] = "{log: [low, high]}"
     schema_of_form: ClassVar[Mapping[str, Any]] = _mapping_schema(log=TWO)
@@ -116,7 +116,7 @@ class LogUniform(_Written):
 
 
 class Normal(_Written):
-    """Normal distribution cut off at `low` and `high` (no value is ever drawn outside)."""
+    """Normal distribution, cut off at `low` and `high`."""
 
     form: ClassVar[str] = "{normal: [mean, std], within: [low, high]}"
     schema_of_form: ClassVar[Mapping[str, Any]] = _mapping_schema(normal=TWO, within=TWO)

@@ -18,7 +18,7 @@ from siggen.keys.problems import received_text, refusal
 from siggen.keys.usual import Usual
 
 TeethValue = int | tuple[int, ...] | Choice
-DAMAGED_TEETH = "number of neighbouring teeth (the first is drawn), a choice of numbers (drawn), or a list of indices"
+DAMAGED_TEETH = "number of neighbouring teeth, the first drawn; a choice of numbers (drawn); or a list of indices"
 
 
 class TeethParser(Parser):
@@ -70,7 +70,7 @@ Teeth = Annotated[TeethValue, TeethParser()]
 
 Stages: TypeAlias = Annotated[Number | Each, Within(above=0, most=1, each=True), Usual(0.02, 1)]
 
-STAGES = "lengths and depth of a tooth's spall over those given here, drawn for each; {each: [a, b]}: one for each"
+STAGES = "lengths and depth of each tooth's spall over those given here; {each: [a, b]}: one for each tooth"
 
 
 def stage_of(stages: Number | Each, index: int) -> Number:

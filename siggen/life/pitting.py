@@ -59,8 +59,8 @@ class Pitting(Law):
     )
     torque_exponent: Annotated[Number, Within(least=0, most=20), Usual(1, 20)] = Field(
         default=Uniform(low=4.3, high=8.8),
-        description="life falls with the torque to this power, until the first pit and after it; 4.3: load and life of "
-        "tested spur gears (NASA), 6.6 and 8.8: case-hardened flanks of ISO 6336-2 without pits and with some (memory)",
+        description="life falls with this power of the torque; 4.3: tested spur gears (NASA); 6.6, 8.8: ISO "
+        "6336-2, case-hardened, without and with pits (memory)",
     )
     rate_sd: Annotated[Real, Field(ge=0, le=2), Usual(0.02, 2)] = Field(
         default=0.35, description="standard deviation of the rate's logarithm from pit to pit"

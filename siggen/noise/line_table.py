@@ -27,7 +27,7 @@ class LineTable(Source):
     """
 
     key: ClassVar[str] = "lines"
-    about: ClassVar[str] = "lines of given orders or frequencies, such as those found in recordings; "
+    about: ClassVar[str] = "lines of given orders or frequencies; "
     meaning: ClassVar[str] = "RMS of the lines of given orders or frequencies in"
     fitted: ClassVar[bool] = True
     file_columns: ClassVar[tuple[str, ...]] = ("order", "frequency_hz", "amplitude_m_s2")

@@ -51,7 +51,7 @@ SPECTRUM_TAPS = 16_384
 
 LEVEL_TIME_MS = Uniform(low=1.0, high=8.0)
 """Correlation time of the random level (measured: the level changes within 10 ms)."""
-DEPTHS = "of the power, once per turn of that shaft; 1/√2 and 1/√3 of it twice and three times"
+DEPTHS = "of the power, once per turn of that shaft; 1/√2 and 1/√3 of it at 2x and 3x"
 
 
 class NoiseModulation(Section):
@@ -68,7 +68,7 @@ class SensorDensity(Density, Source):
     """Noise of a sensor and its electronics in the channel's unit/√Hz, as of a data sheet or a measurement at rest."""
 
     key: ClassVar[str] = "noise_spectrum"
-    about: ClassVar[str] = "noise of any density beside the white and the pink one; "
+    about: ClassVar[str] = "further noise of any density; "
     meaning: ClassVar[str] = "RMS of the noise of given density in"
     broad: ClassVar[bool] = True
     file_columns: ClassVar[tuple[str, ...]] = ("frequency_hz", "density")

@@ -24,19 +24,18 @@ UNITS = {
 """Unit by the ending of a name, longer endings first."""
 
 MEANINGS = {
-    "mesh_force_n": "force of all tooth pairs along the line of action, positive on the drive flank",
+    "mesh_force_n": "of all pairs along the line of action, positive on the drive flank",
     "mesh_stiffness_n_per_m": "sum of the stiffnesses of the pairs in contact",
     "mesh_damping_n_s_per_m": "damping of the pairs in contact",
-    "approach_m": "R_b1 theta_1 - R_b2 theta_2 and the gears' shifts along the line of action; 0 in the middle of the "
-    "backlash (mesh law linear) or where perfect drive flanks touch (pairs)",
+    "approach_m": "R_b1 theta_1 - R_b2 theta_2 and the gears' shifts along the line of action; 0 in the "
+    "middle of the backlash (law linear) or where perfect drive flanks touch (pairs)",
     "approach_rate_m_s": "rate of the approach",
-    "transmission_error_m": "dynamic transmission error on the line of action, shifts of the gears included: "
-    "approach_m beyond the backlash it closed (mesh law linear), approach_m itself (pairs)",
+    "transmission_error_m": "dynamic transmission error: approach_m (law pairs), or what exceeds the backlash (linear)",
     "friction_force_n": "friction of all pairs across the line of action",
     "friction_moment_{0.body}_nm": "moment of the friction about the axis of {0.called}",
     "friction_moment_{1.body}_nm": "moment of the friction about the axis of {1.called}",
-    "mesh_tilt_rad": "tilt of the flanks of {0.called} against those of {1.called} in the plane of action, static tilt "
-    "included",
+    "mesh_tilt_rad": "tilt of the flanks of {0.called} against the other's in the plane of action, static "
+    "tilt included",
     "mesh_moment_nm": "moment of all pairs across the face, positive with the load at the far end",
     "{0.body}_angle_rad": "angle of {0.called} within its revolution, from 0 to 2 pi",
 }

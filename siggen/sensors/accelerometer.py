@@ -60,13 +60,13 @@ class Accelerometer(SourceKeys, SensorBase):
     kind: Literal["accelerometer"] = Field(default="accelerometer", description="acceleration of a place")
     place: Annotated[str, IN_MOTION] = Field(
         default="pinion_bearing",
-        description="where it is mounted; lid to foot with housing.kind: plates, casing with kind: rigid, "
-        "modal or a path, NAME_bearing with several meshes",
+        description="lid to foot need housing.kind: plates, casing the kinds rigid, modal or a path, "
+        "NAME_bearing several meshes",
     )
     position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), size=2), Grows(SIZE)] = Field(
         default=None,
-        description="casing: horizontal, vertical from its centre of gravity; from the middle of lid: horizontal, "
-        "axial; wall: horizontal, vertical; ends: vertical, axial; null: up to 15 mm, drawn",
+        description="from the centre of gravity of a casing or the middle of a wall: horizontal, vertical; "
+        "lid: horizontal, axial; ends: vertical, axial; null: up to 15 mm, drawn",
     )
     axes: Annotated[tuple[Literal["vertical", "horizontal", "axial"], ...], Field(min_length=1)] = Field(
         default=("vertical",), description="what it measures, one channel each"
@@ -92,7 +92,7 @@ class Accelerometer(SourceKeys, SensorBase):
     mounting: Resonance | None = Field(default=None, description="of the sensor on its stud or magnet; null: rigid")
     resonance: Resonance | None = Field(default=None, description="of the sensor itself; null: none")
     cross_axis: Annotated[Number, Within(least=0, most=0.2), Usual(0.002, 0.2)] = Field(
-        default=0.0, description="sensitivity across the axis over that along it, in a direction drawn per gearbox"
+        default=0.0, description="sensitivity across over along the axis, in a direction drawn per gearbox"
     )
 
     @model_validator(mode="before")

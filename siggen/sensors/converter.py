@@ -37,9 +37,7 @@ Bits: TypeAlias = Annotated[
     ),
     BITS,
 ]
-BITS_TEXT = (
-    "of the converter; noise: as few as keep its step within a fifth of the lowest noise floor; null: not quantised"
-)
+BITS_TEXT = "of the converter; noise: as few as keep its step below a fifth of the floor; null: not quantised"
 
 
 def bits_of_noise(limit: float, floor: float) -> int:

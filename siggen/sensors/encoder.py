@@ -54,7 +54,7 @@ class Encoder(SensorBase):
         default=1024, description="marks of the disc, as the counter counts them"
     )
     pitch_error: Annotated[Number, Within(least=0, most=0.1), Usual(0.0002, 0.1)] = Field(
-        default=0.01, description="standard deviation of a mark's place over the pitch; each mark keeps its own"
+        default=0.01, description="standard deviation of each mark's place over the pitch"
     )
     eccentricity: Annotated[Number, Within(least=0, most=0.1), Usual(1e-05, 0.02)] = Field(
         default=5e-4, description="of the disc over the radius of its marks, in a direction drawn per gearbox"

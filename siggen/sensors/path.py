@@ -49,8 +49,8 @@ class MeasuredPath(Section):
     file: OneOrMore | None = Field(
         default=None,
         description=(
-            "CSV, Parquet or npz, from the folder of the configuration; of a list every gearbox draws one, sensors "
-            "with as many files the same number"
+            "CSV, Parquet or npz, from the folder of the configuration; of a list every gearbox draws one, "
+            "alike for all sensors"
         ),
     )
     sha256: str | None = Field(

@@ -86,7 +86,7 @@ class SensorBase(Section):
     axes: Annotated[tuple[str, ...], Field(min_length=1)] = Field(description="what it measures, one channel each")
     gain: Annotated[Number | Each, Within(above=0, each=True), Usual(0.05, 20)] = Field(
         default=1.0,
-        description="reading per true value, drawn per specimen and axis; {each: [a, b]}: a number per axis",
+        description="reading per true value, drawn per axis; {each: [a, b]}: one per axis",
     )
     bits: Bits = Field(default=16, description=BITS_TEXT)
 

@@ -21,7 +21,7 @@ from siggen.sensors.transducer import Running, Transducer
 
 LARGEST_UM = 1e6
 MICROMETRES = 1e6
-ENCODER = "an encoder of the set on pinion or motor; one on gear or load"
+ENCODER = "encoder of the set on pinion or motor; on gear or load"
 
 
 class TransmissionError(SensorBase):

@@ -29,13 +29,15 @@ def named_together(names: list[str], texts: list[str]) -> bool:
 
 def rows(page: str) -> Iterator[tuple[list[str], str]]:
     """Yield (words of a key: itself, the section around it and the top-level one, whether presets set it)."""
-    top = ""
+    heading, inside = "", ""
     for line in page.partition("## Ranges")[0].splitlines():
         if line.startswith("#"):
-            top = line.lstrip("# ").removesuffix(".NAME.damage").removesuffix(".NAME.path")
+            heading, inside = line.lstrip("# ").removesuffix(".NAME.damage").removesuffix(".NAME.path"), ""
+        elif line.startswith(("Kind ", "All kinds")):
+            inside = line.partition(" in `")[2].removesuffix("`:")
         elif found := KEY_LINE.match(line):
-            key = found["key"].replace("[]", "").replace(".NAME", "")
-            words = [*([] if top == "Top level" else [top]), *key.split(".")]
+            path = ".".join(("" if heading == "Top level" else heading, inside, found["key"]))
+            words = [word.removesuffix("[]") for word in path.split(".") if word not in ("", "NAME")]
             yield list(dict.fromkeys(words[:1] + words[-2:])), "" if line.endswith("||") else "preset"
 
 
