@@ -474,7 +474,7 @@ def joined(parts: Sequence[Inspections]) -> Inspections:
 
 @single_thread()
 def benchmark_baselines(folder: str | Path, seed: int = 0, workers: int = 1) -> Path:
-    """Learn the baselines on the part to learn from, write what they say of all test parts; return the file."""
+    """Learn the baselines, write what they say of all test parts, and return the file."""
     require_packages("baselines", "sklearn")
     benchmark = open_benchmark(folder)
     predictions = life_predictions if question_of(benchmark.learn().config) is LIFE_QUESTION else damage_predictions
@@ -532,7 +532,7 @@ def leaderboard(
     labels: str | Path | None = None,
     seed: int = 0,
 ) -> Path:
-    """Write leaderboard.html: all entries and baselines, with limits over gearboxes and paired differences.
+    """Write leaderboard.html: all entries and baselines, with limits and paired differences.
 
     Parameters
     ----------

@@ -327,7 +327,7 @@ def benchmark_card(facts: Mapping[str, Any], design: Any, card: str, question: Q
 
 
 def commit_benchmark(folder: str | Path, labels: str | Path | None = None) -> str:
-    """Return the SHA-256 of labels, salt, seeds and configurations, written into the benchmark: publish it first.
+    """Write the SHA-256 of labels, salt, seeds and configurations, and return it: publish it first.
 
     Raises
     ------
@@ -342,7 +342,7 @@ def commit_benchmark(folder: str | Path, labels: str | Path | None = None) -> st
 
 
 def reveal_benchmark(folder: str | Path, labels: str | Path | None = None) -> Path:
-    """Write labels, salt, seeds and configurations of the test parts into the benchmark; return the file.
+    """Write labels, salt, seeds and configurations of the test parts; return the file.
 
     Raises
     ------
@@ -379,7 +379,7 @@ def make_benchmark(
     facts: str | Path | None = None,
     workers: int | None = None,
 ) -> Benchmark:
-    """Make a part to learn from, and test parts without labels whose seeds nobody knows; or go on with them.
+    """Make a part to learn from and test parts without labels, whose seeds nobody knows; or go on with them.
 
     What the tiers of siggen-bench cost is printed first.
 

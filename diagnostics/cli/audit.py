@@ -19,15 +19,13 @@ def audit(
     *,
     strict: Annotated[
         bool,
-        typer.Option(
-            "--strict", help="End with exit code 4 unless passed: after a trap, or with too few gearboxes to tell."
-        ),
+        typer.Option("--strict", help="End with exit code 4 after a trap, or with too few gearboxes to tell."),
     ] = False,
     reference: Annotated[
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="Compare with your own healthy recordings: one file or one subfolder each, 4 or more for a verdict. "
+            help="Compare with your own healthy recordings, a file or subfolder each; 4 or more for a verdict. "
             "Each must state its sampling rate.",
             show_default=False,
         ),
@@ -35,7 +33,7 @@ def audit(
     indicator: OwnIndicators = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", metavar="DIR", help="Folder, SET_audit unless told.", show_default=False),
+        typer.Option("--out", "-o", metavar="DIR", help="Folder, by default SET_audit.", show_default=False),
     ] = None,
     seed: Seed = 0,
     as_json: AsJson = False,

@@ -33,15 +33,14 @@ def baseline(
         typer.Option(
             "--load",
             metavar="L[,L...]|slip",
-            help="Load in any unit: of all recordings, or one for each. `slip`: the fall of an induction motor's speed "
-            "tells it.",
+            help="Load in any unit: of all recordings, or one for each; `slip`: by an induction motor's speed.",
         ),
     ] = "",
     false_alarms: Annotated[
         float, typer.Option(min=0.001, max=0.3, help="Wanted rate of false alarms of `check`.")
     ] = 0.05,
 ) -> None:
-    """Learn what a healthy machine looks like; `check` compares later recordings with it. No simulation is needed.
+    """Learn what a healthy machine looks like, for `check` of later recordings. No simulation is needed.
 
     Recordings that cannot be used are named behind the others; the exit code is then 2.
 

@@ -28,9 +28,8 @@ class DrawOptions:
         typer.Option(
             min=2,
             max=200,
-            help="Gearboxes simulated for their bearing forces, about 1 s each, and transfer paths drawn of each "
-            "channel; "
-            "the page compares as many, up to 8.",
+            help="Gearboxes simulated for their bearing forces, about 1 s each, and paths drawn of each "
+            "channel; the page compares up to 8.",
         ),
     ] = 24
     seed: Annotated[int, typer.Option(min=0, help="Seed of what is drawn.")] = 0
@@ -53,8 +52,7 @@ class UseOptions:
         typer.Option(
             "--inject",
             metavar="FOLDER",
-            help="Also write the recordings plus the simulated difference damaged less healthy, as a set: two "
-            "gearboxes for each recording.",
+            help="Also write a set of the recordings plus simulated damage, two gearboxes for each recording.",
         ),
     ] = None
 
@@ -63,9 +61,7 @@ class UseOptions:
 def calibrate(
     machine: Annotated[
         Path,
-        typer.Argument(
-            metavar="MACHINE", help="Configuration of the machine, as `siggen init` writes it; several meshes too."
-        ),
+        typer.Argument(metavar="MACHINE", help="Configuration of the machine, as `siggen init` writes it."),
     ],
     healthy: Annotated[
         list[str],

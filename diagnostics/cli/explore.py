@@ -102,8 +102,8 @@ def explore(
         list[str],
         typer.Argument(
             metavar="SET | [MACHINE] RECORDING... [SET]",
-            help="Folder or s3://... of a finished set; or recordings, behind the folder that `baseline` wrote. A set "
-            "behind them, such as one that `calibrate` led to, is laid over them.",
+            help="Folder or s3://... of a finished set; or recordings, also behind the folder that `baseline` wrote. A "
+            "set behind them, such as one that `calibrate` led to, is laid over them.",
             show_default=False,
         ),
     ],
@@ -123,7 +123,7 @@ def explore(
     gears: GearOptions,
     recording: RecordingOptions,
 ) -> None:
-    """Look at recordings, or at the records of a set at once: the page of `report` without its judgement.
+    """Look at recordings, or at a set: the page of `report` without its judgement.
 
     It opens from disk, without a network. What `report` wrote beside a set (SET_report) names its records. The folder
     of a machine knows how its recordings are read, and which of them are healthy.

@@ -36,7 +36,7 @@ def indicators(
             "--out",
             "-o",
             metavar="FOLDER | FILE",
-            help="Folder, DIR_indicators unless told; a .parquet or .csv file takes the values of a set alone.",
+            help="Folder, by default DIR_indicators; a .parquet or .csv file takes the values of a set alone.",
             show_default=False,
         ),
     ] = None,
@@ -45,7 +45,7 @@ def indicators(
     gears: GearOptions,
     recording: RecordingOptions,
 ) -> None:
-    """Compute all indicators: of a set, ranked by how well they separate damage; or of measured recordings.
+    """Compute all indicators: of a set, ranked by how well they separate damage; or of recordings.
 
     Of a set it writes the values and the ranking as tables; `report` shows both. Of recordings also indicators.html.
 

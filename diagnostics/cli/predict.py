@@ -37,8 +37,7 @@ class ReferenceOptions:
         list[str] | None,
         typer.Option(
             metavar="FILE[:ROW,ROW]",
-            help="Recording of the same machine in healthy state, with the same columns and unit. May be given several "
-            "times.",
+            help="Healthy recording of the same machine, with the same columns and unit. May be given several times.",
         ),
     ] = None
 

@@ -29,9 +29,8 @@ Rig = Annotated[
     typer.Option(
         "--rig",
         metavar="YAML",
-        help="How recordings are read: channels, unit, sensitivity, tacho, teeth and all else that their files do "
-        "not say. "
-        "A file that is not there is written, with the columns of the first recording.",
+        help="How recordings are read: channels, unit, tacho, teeth and all else that files do not say. A "
+        "file that is not there is written, with the columns of the first recording.",
         show_default=False,
     ),
 ]
@@ -50,8 +49,8 @@ class RecordingOptions:
         typer.Option(
             "--speed",
             metavar="LOW,HIGH | SPEED",
-            help="Without a tacho: range of the first shaft's speed [Hz], or its speed where it is known to 3 %, in Hz "
-            "or as 1780rpm. Its angle is searched in the mesh lines.",
+            help="Without a tacho: range of the first shaft's speed [Hz]; or its speed, known to 3 %, also as "
+            "1780rpm. Its angle is searched in the mesh lines.",
         ),
     ] = None
 
@@ -110,7 +109,7 @@ class GearOptions:
         typer.Option(
             "--teeth",
             metavar="Z1,Z2 | YAML",
-            help="Teeth of pinion and gear, or the configuration with all gears: a `machine` or a planetary set too.",
+            help="Teeth of pinion and gear, or a configuration with all gears.",
         ),
     ] = None
 

@@ -52,7 +52,7 @@ class TrainingOptions:
         typer.Option(
             "--predictions",
             metavar="FILE",
-            help="Your own predictions, as `score` takes them: their scores stand on the page beside the classifiers'.",
+            help="Your own predictions, as `score` takes them, for the page.",
             show_default=False,
         ),
     ] = None
@@ -67,7 +67,7 @@ def report(
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", "-o", metavar="DIR", help="Folder for the report, SET_report unless told.", show_default=False
+            "--out", "-o", metavar="DIR", help="Folder for the report, by default SET_report.", show_default=False
         ),
     ] = None,
     indicator: OwnIndicators = None,
@@ -76,7 +76,7 @@ def report(
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
-    """Write the page of a set: which damage is found, how sure that is, and all its records; and train models.
+    """Write the page of a set: which damage is found, how surely, and all records; and train models.
 
     Classifiers are judged on gearboxes that they have not seen. The page opens from disk, without a network. Of
     gearboxes that run to failure it says how well baselines tell their remaining life. Beside it lie metrics.json,

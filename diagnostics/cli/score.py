@@ -40,7 +40,7 @@ def score(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="Sealed labels of a benchmark; those revealed, else SET_secret/sealed.json unless told.",
+            help="Sealed labels of a benchmark; by default those revealed, else SET_secret/sealed.json.",
             show_default=False,
         ),
     ] = None,
@@ -48,7 +48,7 @@ def score(
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
-    """Judge the predictions of your own classifiers, with limits over gearboxes; the last line says what they mean.
+    """Judge predictions of your own classifiers, with limits over gearboxes, and say what they mean.
 
     What `report` wrote beside the set (SET_report) is judged on the same records. Missing, doubled and unknown records
     and values that cannot be are refused in one list. Of a benchmark every test part is judged that the predictions

@@ -392,7 +392,7 @@ def with_networks(detectors: Detectors, matrix: FeatureMatrix, training: Trainin
 def evaluate(
     model: Any, data: FeatureMatrix, *, values: np.ndarray | None = None, beside: bool = False, seed: int = 0
 ) -> JudgedDetector:
-    """Judge a classifier of your own as a report judges its own: on every gearbox, by what has learnt on others.
+    """Judge a classifier of your own on every gearbox, by what has learnt on others.
 
     Parameters
     ----------

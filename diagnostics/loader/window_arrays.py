@@ -65,7 +65,7 @@ class Windows:
 def windows(
     dataset: Dataset, split: str, settings: StreamSettings | None = None, *, labels: Sequence[str] = ()
 ) -> Windows:
-    """Return all windows of a split; a set that does not fit into memory has `diagnostics.loader`.
+    """Return all windows of a split, as arrays.
 
     Parameters
     ----------

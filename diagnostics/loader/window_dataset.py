@@ -115,7 +115,7 @@ def _bytes(records: Mapping[int, Sequence[np.ndarray]]) -> int:
 
 
 class ShardSampler(Sampler[int]):  # type: ignore[misc]
-    """Numbers of windows in the shuffled order of a `WindowDataset`, another one in every epoch.
+    """Shuffled order of a `WindowDataset`, another one in every epoch.
 
     Records that lie together on disk are drawn close to each other, so that each is decoded few times. The order
     depends on seed, epoch and rank alone.

@@ -56,7 +56,7 @@ class Position:
 
 
 class WindowStream(IterableDataset[Any]):  # type: ignore[misc]  # the type checker does not read torch
-    """Windows of one split, in batches or one by one; iterate it through a `WindowLoader` or torch's `DataLoader`.
+    """Windows of one split, in batches or one by one, for a `WindowLoader` or torch's `DataLoader`.
 
     A batch has `windows` (batch, channels, samples) float32 in the unit of the channels, `record_id`, `specimen_id`,
     `state_id`, `class_id` (batch,) int64 (all healthy states are one class) and `damaged_area_mm2` (batch,) float64.
@@ -190,7 +190,7 @@ class WindowStream(IterableDataset[Any]):  # type: ignore[misc]  # the type chec
 
 
 class WindowLoader:
-    """Iterates a stream, in this process or by `workers` of them, and knows where it is.
+    """Iterates a stream, by `workers` processes, and knows where it is.
 
     One iteration is the rest of one epoch; the next one begins the next epoch. The order depends on the seed, the
     epoch, `world_size`, the batch size and the number of workers.

@@ -202,7 +202,7 @@ def recording_indicators(
     facts: RecordingFacts | None = None,
     speed_range_hz: tuple[float, float] | None = None,
 ) -> RecordingIndicators:
-    """Return all indicators of a recording that is no record of a set.
+    """Return all indicators of a recording.
 
     Parameters
     ----------

@@ -53,7 +53,7 @@ Answers = dict[str, np.ndarray]
 
 @dataclass(frozen=True, slots=True)
 class Scores:
-    """Scores of predictions on one split of a set; `print` shows them as a table.
+    """Scores of predictions on a split; `print` shows a table.
 
     Attributes
     ----------
@@ -166,7 +166,7 @@ def score(
     seed: int = 0,
     classes: str | None = None,
 ) -> Scores:
-    """Judge predictions for the records of a split by every task that their columns answer.
+    """Judge predictions for a split by every task that their columns answer.
 
     Parameters
     ----------

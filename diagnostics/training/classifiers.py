@@ -101,7 +101,7 @@ class _Baseline(ClassifierMixin, BaseEstimator):  # type: ignore[misc]  # the ty
 
 
 class LogisticBaseline(_Baseline):
-    """Logistic regression on logarithms of what is positive; C is chosen on gearboxes left out.
+    """Logistic regression on logarithms; C is chosen on gearboxes left out.
 
     Parameters
     ----------
@@ -149,14 +149,15 @@ def _chosen_strength(
 
 
 class BoostingBaseline(_Baseline):
-    """Gradient boosting; rounds lose least on what is set aside, else on every fifth gearbox, and all are fitted then.
+    """Gradient boosting; the number of rounds is chosen on gearboxes left out.
 
     Parameters
     ----------
     seed : int
         Of the histograms' sample.
     rounds : int, optional
-        Taken as they are.
+        Taken as they are; else those that lose least on what is set aside, or on every fifth gearbox, before all are
+        fitted.
     """
 
     def __init__(self, seed: int = 0, rounds: int | None = None) -> None:

@@ -160,7 +160,7 @@ def pretrain(
     workers: int | None = None,
     say: Say = lambda _: None,
 ) -> dict[str, Any] | None:
-    """Train a network on streamed gearboxes; a call that was stopped or ended goes on with the same arguments.
+    """Train a network on streamed gearboxes, or go on with it.
 
     Parameters
     ----------

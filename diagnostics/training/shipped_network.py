@@ -80,7 +80,7 @@ def heads(
 
 
 def pretrained_features(dataset: Dataset, *, beside: bool = False, classes: str = STATE) -> FeatureMatrix:
-    """Return one row per record: what the network that comes with the package says of it, with labels.
+    """Return one row per record: labels, and what the shipped network says of it.
 
     Columns are the log odds of damage, of each kind and of the pinion against the gear, and the logarithm of the
     damaged share of the worst flank; means over the channels of acceleration.

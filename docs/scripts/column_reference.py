@@ -7,7 +7,7 @@ is found by leaving that section out.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import pyarrow as pa
@@ -50,15 +50,15 @@ The files carry these texts as metadata (`unit`, `meaning`, `role`); `make refer
 type is double where none stands. Sets with numbers from files have besides `path_number_CHANNEL` and
 `noise_spectrum_CHANNEL_m_s2`.
 
-| role | what it is | may a classifier have it | may it tell the state |
+|role|what it is|may a classifier have it|may it tell the state|
 |---|---|---|---|
-| `key` | names a record, or what it belongs to | no | yes |
-| `signal` | what a sensor gave | yes | yes |
-| `condition` | known beside the signal, such as speed and load | yes | no |
-| `measured` | what anybody can compute from the signal | yes | yes |
-| `consequence` | follows from the damage; the simulation alone knows it | no | yes |
-| `target` | what the damage is: to be predicted | no | yes |
-| `provenance` | what was drawn for gearbox or record; the simulation alone knows it | no | no |
+|`key`|names a record, or what it belongs to|no|yes|
+|`signal`|what a sensor gave|yes|yes|
+|`condition`|known with the signal, such as speed and load|yes|no|
+|`measured`|what anybody can compute from the signal|yes|yes|
+|`consequence`|follows from the damage; the simulation alone knows it|no|yes|
+|`target`|what the damage is: to be predicted|no|yes|
+|`provenance`|what was drawn; the simulation alone knows it|no|no|
 
 The manifest lists the roles (`columns`). A column that it does not list is a condition.
 """
@@ -119,8 +119,23 @@ def rows(fields: Iterable[pa.Field], brought: Mapping[str, str], named: Iterable
         known = ", ".join(part for part in (facts.get("unit", ""), "" if kind == "double" else kind) if part)
         group = groups.setdefault((brought.get(field.name, ""), facts["role"]), [])
         group.append(f"|{marked(name, names)}|{known}|{meaning}|")
+    few = [
+        f"{line}{needed}|`{role}`|"
+        for (needed, role), lines in groups.items()
+        if is_few(needed, lines)
+        for line in lines
+    ]
     for (needed, role), lines in sorted(groups.items(), key=lambda one: bool(one[0][0])):
-        yield from (f"With {needed}, `{role}`:" if needed else f"`{role}`:", "", *COLUMN_TABLE, *lines, "")
+        if not is_few(needed, lines):
+            yield from (f"With {needed}, `{role}`:" if needed else f"`{role}`:", "", *COLUMN_TABLE, *lines, "")
+    yield from (
+        ("With a key:", "", "|column|unit, type|meaning|with|role|", "|---|---|---|---|---|", *few, "") if few else ()
+    )
+
+
+def is_few(needed: str, lines: Sequence[str]) -> bool:
+    """Tell whether a section brings so few columns that they stand in a table with others."""
+    return bool(needed) and len(lines) < 3
 
 
 def is_twin(name: str, names: Iterable[str]) -> bool:

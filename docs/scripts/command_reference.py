@@ -22,10 +22,13 @@ ALIKE = ("--set", "CONFIG", "DIR", "SET")
 OPTION = re.compile(r"^\* `([^`]*)`: (.*?)(?:  \[([^\]]*)\])?$", re.MULTILINE)
 COMMAND = re.compile(r"^## `([^`]*)`$\n\n(.*)$", re.MULTILINE)
 NAME = re.compile(r"(?:-\w, )?(--[\w-]+)")
+FORMATS = re.compile(r":? \.csv, [^;]* and others")
+"""Of recordings, which the head of the page names once."""
 SENTENCE = re.compile(r"^.*?(?<!s3://\.\.)(?<!\d)[.](?=\s[A-Z]|$)")
 HEAD = """# Commands
 
 `siggen COMMAND -h` says more: meanings in full, limits of numbers, further examples. `make reference` prints this page.
+Recordings are files of [many formats](../start/from_a_file.md#formats-of-recordings); rows of Parquet: `FILE:ROW,ROW`.
 
 exit code|meaning
 ---|---
@@ -50,6 +53,7 @@ def helped(program: str, app: str) -> str:
 
 def sentence(meaning: str) -> str:
     """Return the first sentence of a meaning, in a cell."""
+    meaning = FORMATS.sub("", meaning)
     found = SENTENCE.search(meaning)
     return (found[0] if found else meaning).removesuffix(".").replace("|", "\\|")
 

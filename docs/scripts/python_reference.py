@@ -35,16 +35,8 @@ HEAD = """# Python API
 
 **`help(siggen.run)` says what each argument means, its unit, the errors and the source.** This page has the names,
 printed by `make reference`. Anything else may move between versions.
-
-```python
-import siggen
-
-gearbox = siggen.single_stage(teeth=(23, 61), module_mm=2.5)
-record = siggen.run(gearbox, speed_hz=25, torque_nm=40)
-record.spectrum().plot()
-```
 """
-TABLE = "name|what it is or does|has\n---|---|---"
+TABLE = "name|what|has\n---|---|---"
 
 DIAGNOSTICS = {
     "## diagnostics\n\n`import diagnostics` loads nothing. An example: "
@@ -138,8 +130,10 @@ def members(node: ast.ClassDef) -> Iterator[str]:
 
 
 def first_sentence(doc: str) -> str:
-    """Return the first paragraph on one line."""
-    return " ".join(doc.split("\n\n", maxsplit=1)[0].split()).replace("|", "\\|")
+    """Return the first paragraph on one line; of what is returned the thing alone."""
+    text = " ".join(doc.split("\n\n", maxsplit=1)[0].split()).replace("|", "\\|")
+    told = text.removeprefix("Return ")
+    return told[:1].upper() + told[1:]
 
 
 def page() -> str:

@@ -28,7 +28,7 @@ def _beyond(told: Sequence[Problem], of_physics: Iterable[Problem]) -> Iterator[
 
 
 def load_config(source: str | Path | Mapping[str, Any], overrides: Sequence[str] = ()) -> SetDesign:
-    """Return the design of a set by a YAML file or mapping, with overrides such as `gears.module_mm=3.5` applied.
+    """Return the design of a set by a YAML file or mapping, with overrides such as `gears.module_mm=3.5`.
 
     Where there is no file of this path, the name of a preset such as `quickstart` stands for the one that siggen ships.
 

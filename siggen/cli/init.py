@@ -20,9 +20,7 @@ class MachineOptions:
 
     teeth: Annotated[str, typer.Option("--teeth", metavar="Z1,Z2", help="Teeth of pinion and gear.")] = ""
     module: Annotated[str, typer.Option("--module", metavar="MM", help="Module.")] = ""
-    face_width: Annotated[
-        str, typer.Option("--face-width", metavar="MM", help="Face width; proposed where it is not given: 8 modules.")
-    ] = ""
+    face_width: Annotated[str, typer.Option("--face-width", metavar="MM", help="Face width; else 8 modules.")] = ""
     speed: Annotated[
         str,
         typer.Option(
@@ -34,7 +32,7 @@ class MachineOptions:
         typer.Option(
             "--torque",
             metavar="NM",
-            help="On the pinion: one, or lowest,highest; where it is not given, what the gears are rated for.",
+            help="On the pinion: one, or lowest,highest; else what the gears are rated for.",
         ),
     ] = ""
     fs: Annotated[

@@ -88,7 +88,7 @@ def inspect(
         typer.Option(
             "--torque",
             min=1e-6,
-            help="Torque on the pinion [N m] where damage acts as geometry; by default of the first operating point.",
+            help="Torque on the pinion [N m] where damage acts as geometry; else of the first operating point.",
         ),
     ] = None,
     vary: Annotated[
@@ -96,8 +96,9 @@ def inspect(
         typer.Option(
             "--vary",
             metavar="KEY=VALUES",
-            help="Curves of one state at values of a key, such as states.moderate.damage.first_height_mm=1,1.9,2.8, "
-            "beside the first state's. The state is that of the key, else the last; it grows from no other then.",
+            help="Curves of one state at values of a key, such as "
+            "states.moderate.damage.first_height_mm=1,1.9,2.8, with the first state's. The state is that "
+            "of the key, else the last; it grows from no other then.",
         ),
     ] = "",
     overrides: Annotated[
@@ -106,7 +107,7 @@ def inspect(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", help="Table to write: .csv or .parquet; of life the YAML file, of housing a .csv file."),
+        typer.Option("--out", help="Table to write, .csv or .parquet; of life the YAML file."),
     ] = None,
     picture: PictureOptions,
     as_json: AsJson = False,

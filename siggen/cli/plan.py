@@ -44,14 +44,15 @@ def plan(
             "--trial",
             min=0,
             max=1000,
-            help="Gearboxes of which a short record of every state is simulated, to tell what would be lost and what "
-            "the set costs; 0: none. By default a sample of three records, of states evenly spread; of dear gears one.",
+            help="Gearboxes of which short records are simulated, to tell what would be lost and what the set "
+            "costs; 0: none. By default a sample of three records, of states evenly spread; of dear "
+            "gears one.",
             metavar="N",
         ),
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """List the records, shards and size that a configuration would give, what is implausible and what would be lost.
+    """List records, shards and size of a configuration, what is implausible and what would be lost.
 
     A record is lost where its motion leaves the model. A sample of short records says which share that is. For every
     state it says how much of the mesh stiffness its damage takes, and whether as much was found in the preset bench.

@@ -24,7 +24,7 @@ def publish(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Make a folder for the Hugging Face hub and Zenodo; the set itself is not touched, nothing is uploaded.
+    """Make a folder for the Hugging Face hub and Zenodo; nothing is uploaded.
 
     The folder holds the set's files, a card with class labels, what physics is on and where every number comes from,
     croissant.json and previews. It opens and verifies like the set.

@@ -50,7 +50,7 @@ def show(
         bool,
         typer.Option(
             "--internals",
-            help="Add mesh force, mesh stiffness, transmission error, bearing forces and others to the signals.",
+            help="Add mesh force, mesh stiffness, bearing forces and others to the signals.",
         ),
     ] = False,
     overrides: Annotated[
@@ -59,7 +59,7 @@ def show(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Show the labels and damage of one record, draw its waveform and spectrum, or simulate it again into a file.
+    """Show labels and damage of a record, draw its waveform and spectrum, or simulate it again into a file.
 
     docs/reference/exported_model.md describes every key of an .npz file: matrices, mesh law, start state, time grid.
 

@@ -21,7 +21,7 @@ def verify(
             "--physics",
             min=0,
             metavar="K",
-            help="Integrate K records, spread over all states, again with Runge-Kutta at high resolution, and report "
+            help="Integrate K records, spread over all states, again with fine Runge-Kutta steps, and report "
             "the error by state. Costs fifteen times the records, or more.",
         ),
     ] = 0,

@@ -28,7 +28,7 @@ class WorkerOptions:
             "--allowed-loss",
             min=0.0,
             max=1.0,
-            help="Stop after the shard by which a state lost more than this share of its records. 1: never stop.",
+            help="Stop when a state has lost more than this share of its records; 1: never.",
             metavar="SHARE",
         ),
     ] = 0.1

@@ -77,7 +77,7 @@ class ForeignMesh(Section):
         "to 26 dB lower)",
     )
     shaft_order: Annotated[Number | None, Within(above=0, most=10_000, words=(None,)), Usual(0.005, 100)] = Field(
-        default=None, description="turns of the sidebands' shaft per input turn; null: the second shaft"
+        default=None, description="of the sidebands' shaft; null: the second shaft"
     )
 
 

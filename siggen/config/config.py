@@ -129,7 +129,8 @@ class Config(Section):
         default=None, description="given: gearboxes run until teeth fail, and `states` has no entry"
     )
     sensors: Annotated[tuple[SensorSection, ...], Field(min_length=1), SENSORS] = Field(
-        description="what measures; of kind accelerometer unless it says otherwise"
+        description="what measures, an accelerometer unless `kind` says otherwise; levels of noise are drawn per "
+        "record and axis, with `background` per gearbox"
     )
     manufacture: Manufacture | None = Field(default=None, description="errors of the teeth; null: perfect gears")
     variation: Annotated[Variation, BeforeValidator(in_keys, json_schema_input_type=Variation | str), VARIATION] = (

@@ -67,9 +67,7 @@ class MeshSection(Section):
         description="linear: mesh stiffness times approach (paper A); pairs: each tooth pair by itself, its "
         "contact solved across the face",
     )
-    tip_relief_um: Annotated[Number, Within(least=0)] = Field(
-        default=8.0, description="parabolic relief at the tips of both gears"
-    )
+    tip_relief_um: Annotated[Number, Within(least=0)] = Field(default=8.0, description="parabolic, of both gears")
     tip_relief_pitches: Annotated[Number, Within(above=0, most=1), Usual(0.1, 0.8)] = Field(
         default=0.25, description="its length along the line of action, in base pitches"
     )
@@ -113,7 +111,7 @@ class Friction(Section):
         description="at the inlet of the contact; null: by the losses, up to 90, where a cooler holds it",
     )
     boundary_friction: Annotated[Number, Within(least=0, most=0.5), Usual(0.02, 0.3)] = Field(
-        default=Uniform(low=0.07, high=0.11), description="friction coefficient of asperities, by the oil's additives"
+        default=Uniform(low=0.07, high=0.11), description="coefficient of asperities, by the oil's additives"
     )
     roughness_um: Annotated[Number, Within(above=0, most=5)] = Field(
         default=Uniform(low=0.2, high=0.5), description="rms roughness of either flank, run in (mixed_ehl)"
@@ -328,9 +326,7 @@ class Dynamics(Section):
     mesh: MeshSection = Field(default=MeshSection(), description="how the teeth push")
     friction: Friction = Field(default=Friction(), description="how the teeth rub")
     unbalance: UnbalanceSection = Field(default=UnbalanceSection(), description="forces of shafts out of balance")
-    shafts: Shafts | None = Field(
-        default=None, description="given, with model: casing: shafts bend and gears tilt; null: gears stay parallel"
-    )
+    shafts: Shafts | None = Field(default=None, description="given: shafts bend and gears tilt (model: casing)")
     rated_torque_nm: Annotated[float | None, Field(gt=0, le=1e6), RATED_TEXT] = Field(
         default=None,
         description=RATED_LOAD,

@@ -54,7 +54,7 @@ class DrawnPairs(Section):
     )
     module_mm: Annotated[Number, Within(above=0)] = Field(description="normal module")
     face_width_over_module: Annotated[Number, Within(above=0, most=100)] = Field(
-        description="face width in modules; the width is rounded to whole mm"
+        description="in modules; the width is rounded to whole mm"
     )
 
     def pairs(self) -> tuple[PairSection, ...]:
@@ -125,10 +125,10 @@ class Wheel(Section):
 
     teeth: Annotated[Whole, Field(ge=5, le=1000)] = Field(description="number of teeth")
     profile_shift: Annotated[Number, Within(least=-1, most=1.5)] = Field(
-        default=0.0, description="profile shift in modules, positive away from the centre"
+        default=0.0, description="in modules, positive away from the centre"
     )
     bore_radius_mm: Annotated[Number, Within(least=0.01, most=10_000)] = Field(
-        description="radius of the bore (the shaft's radius)"
+        description="radius of the bore, of the shaft"
     )
 
 
@@ -149,7 +149,7 @@ class ToothForm(Section):
         default=206.0, description="Young's modulus of both gears"
     )
     centre_distance_mm: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
-        default=None, description="null: the one at which the profile shifts mesh without backlash"
+        default=None, description="null: where the profile shifts mesh without backlash"
     )
 
 

@@ -17,7 +17,7 @@ class Internals(Section):
     """A second table of the set, `internals/`, joined by `record_id`; series at the rate of the signals, as float32."""
 
     quantities: Annotated[tuple[str, ...], Field(min_length=1), NAMES] = Field(
-        default=(ALL,), description="columns of `siggen show --internals`; [all], or a list of names"
+        default=(ALL,), description="columns of `siggen show --internals`, or [all]"
     )
 
     @property

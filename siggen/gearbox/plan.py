@@ -141,7 +141,7 @@ class Records(Sequence[PlannedRecord]):
 
 
 def plan(design: SetDesign) -> Records:
-    """Return all records of a set in ascending order, worked out one by one."""
+    """Return all records of a set in ascending order."""
     expect_design(design)
     return Records(design)
 

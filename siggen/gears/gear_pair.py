@@ -79,7 +79,7 @@ class Gear:
 
 @dataclass(frozen=True, slots=True)
 class GearPair:
-    """A driving pinion and a driven gear of equal face width and material; `of` makes one from a drawing.
+    """Two gears of equal face width and material; `of` makes them from a drawing.
 
     Parameters
     ----------

@@ -37,7 +37,7 @@ Number = int | float
 
 @dataclass(frozen=True)
 class Damage:
-    """Base of the kinds of damage, and of one of your own: a frozen dataclass with the one method `missing_m`.
+    """Base of all damage, and of your own: a frozen dataclass with the method `missing_m`.
 
     `on` and `tooth` come from here; `State` takes it as any other. What it does beside taking material of a flank, such
     as softening its tooth or a force in a bearing, is not asked for yet.
@@ -338,7 +338,7 @@ def pits_in_layers(
     face_centre_mm: float | None = None,
     tooth: int = 0,
 ) -> tuple[Pit, ...]:
-    """Return rows of equal pits, one above the other, from the middle of the face outwards (paper A, section 2.1).
+    """Return rows of equal pits from the middle of the face outwards (paper A, section 2.1).
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ def machine(
     rated_hz: float = 25.0,
     number: int = 0,
 ) -> Gearbox:
-    """Return a gearbox of any shafts, gears and meshes in a row, under names of your own.
+    """Return a gearbox of shafts, gears and meshes in a row, under your names.
 
     Parameters
     ----------

@@ -186,7 +186,7 @@ def _of_pair(
 
 
 def flank_picture(pair: GearPair, damages: Iterable[Damage], ax: Any = None, *, on: str = "", tooth: int = -1) -> Any:
-    """Draw a damaged flank to scale, with pitch line and zones of contact, and return the axes.
+    """Draw a damaged flank to scale, and return the axes.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ LEAST_PULSES = 4
 
 @dataclass(frozen=True)
 class LineOrders:
-    """Where the lines of one mesh lie: its order, and those of its shafts, per turn of the first shaft."""
+    """Order of a mesh, and of its shafts, per turn of the first shaft."""
 
     name: str
     order: float
@@ -32,7 +32,7 @@ class LineOrders:
 
 @dataclass(frozen=True, repr=False)
 class Spectrum:
-    """Amplitudes over orders: multiples of the first shaft's turns, which stay sharp where the speed varies.
+    """Amplitudes over orders of the first shaft, which stay sharp where the speed varies.
 
     Attributes
     ----------

@@ -88,7 +88,7 @@ def run(
 def runs(
     gearbox: Gearbox, cases: Sequence[Case], *, duration_s: float | None = None, fs_hz: float | None = None
 ) -> Iterator[Record]:
-    """Yield the records of cases in their order, each the same as `run` returns.
+    """Yield the records of cases, each as `run` returns it.
 
     Parameters as of `run`; `gearbox.cases` are those of its set. Neighbours at one speed and torque share what their
     states do not change, and all that are drawn points do.

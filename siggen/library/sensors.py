@@ -50,7 +50,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Channel:
-    """One signal of a sensor: the sum of its readings, through its response, with white noise.
+    """One signal of a sensor: its readings, through its response, with white noise.
 
     Attributes
     ----------
@@ -74,7 +74,7 @@ class Channel:
 
 
 class Sensor(Protocol):
-    """A sensor of your own: a class with this one method. Sources of noise beside white noise are not asked for yet."""
+    """A sensor of your own: a class with this one method. Of noise it has white noise alone."""
 
     def channels(self, gearbox: Any) -> Sequence[Channel]:
         """Return what it records of a `Gearbox`."""

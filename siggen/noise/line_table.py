@@ -37,7 +37,7 @@ class LineTable(Source):
     frequency_hz: Annotated[tuple[Real, ...], Field(min_length=1)] = Field(description="of a tone; 0 for an order")
     amplitude_m_s2: Annotated[tuple[Real, ...], Field(min_length=1)] = Field(description="one for each")
     factor: Annotated[Number, Within(least=0, most=1_000), Usual(0.02, 50)] = Field(
-        default=1.0, description="on each line, drawn per record, axis and line"
+        default=1.0, description="on each line"
     )
 
     @model_validator(mode="after")

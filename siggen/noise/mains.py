@@ -24,10 +24,10 @@ class Mains(Source):
     meaning: ClassVar[str] = "RMS of mains hum in"
 
     amplitude_m_s2: Annotated[Number, Within(least=0), Usual(1e-05, 0.5)] = Field(
-        description="amplitude of the first line, drawn per record and axis; with `background` per gearbox"
+        description="amplitude of the first line"
     )
     frequency_hz: Annotated[Number, Within(above=0), Usual(15, 450)] = Field(
-        default=50.0, description="frequency, drawn per gearbox for every line"
+        default=50.0, description="drawn per gearbox for every line"
     )
 
     def part(self, channel: NoisyChannel, draws: Draws) -> NoisePart:

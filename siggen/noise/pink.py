@@ -26,7 +26,7 @@ class PinkNoise(Source):
     per: ClassVar[tuple[str, str]] = ("_per_sqrt_hz", "/sqrt(Hz)")
 
     density_m_s2_per_sqrt_hz: Annotated[Number, Within(least=0), Usual(1e-07, 0.01)] = Field(
-        description="one-sided density at 100 Hz, drawn per record and axis; with `background` per gearbox"
+        description="one-sided density at 100 Hz"
     )
 
     def part(self, channel: NoisyChannel, draws: Draws) -> NoisePart:

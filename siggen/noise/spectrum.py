@@ -73,9 +73,7 @@ class SensorDensity(Density, Source):
     broad: ClassVar[bool] = True
     file_columns: ClassVar[tuple[str, ...]] = ("frequency_hz", "density")
 
-    factor: Annotated[Number, Within(least=0, most=1_000_000)] = Field(
-        default=1.0, description="on the whole density, drawn per record and axis; with `background` per gearbox"
-    )
+    factor: Annotated[Number, Within(least=0, most=1_000_000)] = Field(default=1.0, description="on the whole density")
     modulation: NoiseModulation | None = Field(default=None, description="null: none")
 
     @property

@@ -97,7 +97,7 @@ def publication(path: Path | str, facts_file: Path | None, audit: Path | None = 
 
 
 def publish(path: Path | str, to: Path | str, facts_file: Path | None, audit: Path | None = None) -> Publication:
-    """Write a folder that is ready to be uploaded; it is a set that `siggen.open` and `siggen verify` read.
+    """Write a folder to upload, which `siggen.open` and `siggen verify` read.
 
     Parameters
     ----------

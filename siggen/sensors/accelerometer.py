@@ -40,7 +40,7 @@ class NoiseFloor(Section):
     """White noise of a given size; a distribution is drawn for every record and axis."""
 
     floor_m_s2: Annotated[Number, Within(least=0), Usual(0.0001, 0.5)] = Field(
-        description="standard deviation of the white noise, drawn per record and axis; with `background` per gearbox"
+        description="standard deviation of the white noise"
     )
 
 
@@ -72,7 +72,7 @@ class Accelerometer(SourceKeys, SensorBase):
         default=("vertical",), description="what it measures, one channel each"
     )
     model: Annotated[str | None, CatalogueWord("model")] = Field(
-        default=None, description="word of the catalogue; keys beside it go before its own", exclude=True
+        default=None, description="word of the catalogue; keys next to it go first", exclude=True
     )
     mount: Annotated[str | None, CatalogueWord("mount")] = Field(
         default=None, description="how it is fixed, by the catalogue: its `mounting`", exclude=True

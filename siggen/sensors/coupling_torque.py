@@ -34,7 +34,7 @@ class TorqueSensor(SensorBase):
     )
     floor_nm: Annotated[Number, Within(least=0)] = Field(
         default=0.0,
-        description="standard deviation of the white noise, drawn per record and axis; with `background` per gearbox",
+        description="standard deviation of the white noise",
     )
     range_nm: Annotated[Real, Field(gt=0)] = Field(description="readings are clipped at plus and minus this")
 

@@ -51,7 +51,7 @@ class MotorCurrent(SensorBase):
     rated_torque_nm: Annotated[Number, Within(above=0)] = Field(description="torque at the rated slip")
     floor_a: Annotated[Number, Within(least=0)] = Field(
         default=0.0,
-        description="standard deviation of the white noise, drawn per record and axis; with `background` per gearbox",
+        description="standard deviation of the white noise",
     )
     range_a: Annotated[Real, Field(gt=0)] = Field(
         default=100.0, description="readings are clipped at plus and minus this"

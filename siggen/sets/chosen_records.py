@@ -40,7 +40,7 @@ class ChosenRecords:
 
 
 def simulate_records(design: SetDesign, record_ids: Sequence[int], workers: int | None = None) -> ChosenRecords:
-    """Return some records of a set, each the one that the whole set holds.
+    """Return some records of a set, as the whole set holds them.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ def generate(
     events: Events | None = None,
     allowed_loss: float = ALLOWED_LOSS,
 ) -> Generation:
-    """Generate a data set, go on with one that was interrupted, or add gearboxes to a finished one.
+    """Generate a data set, go on with one, or add gearboxes to it.
 
     The files do not depend on `workers`, `executor`, parts or stops. More gearboxes leave the shards that are there as
     they are; every record is the one that a set generated at once would have.

@@ -58,7 +58,7 @@ def write_recorded_set(
     measured: SetDesign | None = None,
     life: Mapping[str, pa.Table] | None = None,
 ) -> Path:
-    """Write rows with signals into a new folder that `siggen.open` reads; return the folder.
+    """Write rows with signals into a new folder that `siggen.open` reads.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ MIXED = 16
 
 
 class RecordStream:
-    """Endless records; iterate it. What `siggen.stream` returns.
+    """Endless records; iterate it.
 
     A record is a mapping as `siggen.open(...).record` returns it: labels, channels as float32 (n,), `tacho_s`; besides,
     `renewal` counts from 0, the record of the set itself. Leaving the loop ends the workers; iterating again goes on
@@ -213,7 +213,7 @@ def stream(
     workers: int | None = None,
     executor: Executor | str | None = None,
 ) -> RecordStream:
-    """Return endless records of a design, simulated by worker processes as they are asked for; nothing is written.
+    """Return endless records of a design, simulated by worker processes; nothing is written.
 
     Records and their order depend on the design and on `first_gearbox`, `seed`, `mixed`, `renewals`, `rank` and `ranks`
     alone.
