@@ -14,25 +14,45 @@ class Stream(IntEnum):
     """Consumers of randomness. Integers are part of every data set's identity: never renumber."""
 
     SPLIT = 1
+    """Of a block of 20 specimens: train, validation, test."""
     GEARS = 2
+    """Of a specimen: sections `gears`, `stiffness`, `machine`."""
     SUPPORTS = 3
+    """Of a specimen: section `dynamics`."""
     SENSOR = 4
+    """Of a specimen: section `sensors`."""
     OPERATING_POINT = 5
+    """Of a specimen and operating point: speed, torque."""
     DAMAGED_TEETH = 6
+    """Of a specimen."""
     DAMAGE = 7
+    """Of a specimen and the number of a state: what this state adds to the damage of the milder one."""
     START = 8
+    """Of a specimen, number of a state, operating point and repeat: start angle."""
     NOISE = 9
+    """Of the same: floor, hum and tones of sensors, with a background their levels per gearbox."""
     MANUFACTURE = 10
-    DRIVE = 12
-    BEARING_TONES = 14
+    """Of a specimen and the number of a state, 0 if all states share their gears: errors of the teeth."""
     PATH = 11
+    """Of a specimen: modes and shapes of the housing, other machines."""
+    DRIVE = 12
+    """As START: course of speed and torque, cage slip."""
     FORCE_NOISE = 13
+    """As START: noise of bearing forces."""
+    BEARING_TONES = 14
+    """Of a specimen."""
     BACKGROUND = 15
+    """Of a specimen: numbers, phases and levels of its background."""
     BACKGROUND_NOISE = 16
+    """As START: noise and bursts."""
     PAIRS = 17
+    """Of a pair, by the seed of `gears.pairs`: teeth, module and face width of a pair given as ranges."""
     PAIR_ORDER = 18
+    """Of a block of as many specimens as pairs: which gearbox has which pair."""
     LIFE = 19
+    """Of a specimen: everything of its life."""
     STREAM_ORDER = 20
+    """Of the gearboxes that a stream mixes: the order of their records."""
 
 
 OWNER_KEYS: dict[Stream, int] = {

@@ -283,7 +283,7 @@ def listed(schema: Schema, entry: Entry, place: str) -> str:
     if defaults == "`null`":
         values = values.removesuffix(" or `null`")
     if (of := TAKEN_OVER.get(f"{first.path}.NAME")) is not None:
-        values += f"; keys as in {' and '.join(f'`{one}`' for one in of)}, beside its own"
+        values += f"; keys as in {' and '.join(f'`{one}`' for one in of)}, and its own"
     return row(names, described(schema, first.schema), values, defaults)
 
 
