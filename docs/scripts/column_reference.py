@@ -45,10 +45,9 @@ PLATES = "`housing.kind: plates`"
 SENSOR_PARTS = ("pink_noise", "mains")
 HEAD = """# Columns of a set
 
-The files carry these texts as metadata (`unit`, `meaning`, `role`); `make reference` prints them. `CHANNEL` stands for
-`SENSOR_AXIS`, such as `lid_vertical`. **A name with \\* is there for the gear too**: `teeth_pinion`, `teeth_gear`. The
-type is double where none stands. Sets with numbers from files have besides `path_number_CHANNEL` and
-`noise_spectrum_CHANNEL_m_s2`.
+The files carry these texts as metadata; `make reference` prints them. `CHANNEL` stands for `SENSOR_AXIS`, such as
+`lid_vertical`. **A name with \\* is there for the gear too**: `teeth_pinion`, `teeth_gear`. The type is double where
+none stands. Sets with numbers from files have `path_number_CHANNEL` and `noise_spectrum_CHANNEL_m_s2` too.
 
 |role|what it is|may a classifier have it|may it tell the state|
 |---|---|---|---|
