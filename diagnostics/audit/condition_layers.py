@@ -5,8 +5,9 @@ channels, lags, and the layers of raw records.
 
 * Texts: length, beginning, characters at every place from both ends, residues of the last number, and parts of the
   date. A text that is another one in every record tells no state as a whole; a character or its day may.
-* Digits: how numbers are written, and residues of whole ones: a column that went through another program in one state
-  keeps its values and loses digits.
+* Digits: how numbers are written, residues and check sums of whole ones: a column that went through another program in
+  one state keeps its values and loses digits, or has a number twice in one gearbox.
+* Pairs of columns with few values: each may be the same in all states, and both together not.
 * Noise beside a reference: what the averages of both shafts leave is noise and leftover of the lines, since no tacho of
   one pulse a turn follows a shaft exactly. A damaged tooth makes lines stronger, so its leftover rises too, by no more
   decibels than the lines do: with a noise N and a share j of lines of power S, N + j S rises by less than S. So a rise
@@ -25,7 +26,9 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Mapping
 from datetime import datetime
+from itertools import combinations
 
 import numpy as np
 
@@ -38,10 +41,12 @@ from diagnostics.records.sample_bytes import BYTES
 from diagnostics.statistics.evaluation import mean_of_defined
 from siggen.keys.column import Role
 
-FEW_DIGITS = 12
-"""A number that was computed has 15 to 17."""
+FEW_DIGITS, TEXT_DIGITS = 12, 15
+"""A number that was computed has 15 to 17; many programs write 15."""
 
 MODULI = (2, 3, 4, 5, 7, 8, 9, 10, 11, 13)
+MOST_VALUES, MOST_PAIRED = 6, 12
+"""Values that a column of few may have, and columns that are paired."""
 
 
 def digit_columns(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
@@ -52,9 +57,36 @@ def digit_columns(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
     with np.errstate(over="ignore", invalid="ignore"):
         is_single = values.astype(np.float32).astype(np.float64) == values
     few = np.array([_digits(value) < FEW_DIGITS for value in values.tolist()])
+    kept = np.array([float(f"{value:.{TEXT_DIGITS}g}") == value for value in values.tolist()])
     written = np.isfinite(values) & (values != 0.0)
-    flags = {f"few digits of {name}": few & written, f"single precision of {name}": is_single & written}
+    flags = {
+        f"few digits of {name}": few & written,
+        f"single precision of {name}": is_single & written,
+        f"{TEXT_DIGITS} digits hold {name}": kept & written,
+    }
     return _varied(flags) | zero_signs(name, values)
+
+
+def repeated_values(name: str, values: np.ndarray, specimen: np.ndarray) -> dict[str, np.ndarray]:
+    """Return which numbers (records,) another record of the gearbox has too; what does not vary is left out."""
+    pairs = list(zip(specimen.tolist(), values.tolist(), strict=True))
+    count = Counter(pairs)
+    return _varied({f"{name} that its gearbox has twice": np.array([count[pair] > 1 for pair in pairs])})
+
+
+def pair_columns(columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return which records have each pair of values of two columns (records,) that have few; flags that vary.
+
+    Columns that are constant are left out, and more than MOST_PAIRED columns are not paired.
+    """
+    few = {name: values for name, values in columns.items() if 1 < len(set(values.tolist())) <= MOST_VALUES}
+    flags = {}
+    for (first, ones), (second, others) in combinations(list(few.items())[:MOST_PAIRED], 2):
+        both = list(zip(ones.tolist(), others.tolist(), strict=True))
+        for pair in sorted(set(both), key=str):
+            name = f"{first} is {pair[0]!r} and {second} is {pair[1]!r}"
+            flags[name] = np.array([values == pair for values in both])
+    return _varied(flags)
 
 
 def residue_columns(name: str, values: np.ndarray) -> dict[str, np.ndarray]:
@@ -133,7 +165,15 @@ def _character_columns(name: str, texts: list[str]) -> dict[str, np.ndarray]:
     if all(last):
         numbers = np.array([int(part[0][-DIGITS_KEPT:]) for part in last])
         columns |= residue_columns(f"the last number of {name}", numbers)
+        right = np.array([_luhn(part[0]) == 0 for part in last])
+        columns |= _varied({f"check digit of the last number of {name}": right})
     return columns
+
+
+def _luhn(digits: str) -> int:
+    """Return the sum of Luhn modulo 10, 0 where the last digit checks the others (ISO/IEC 7812-1)."""
+    doubled = [int(digit) * (1 + place % 2) for place, digit in enumerate(reversed(digits))]
+    return sum(value - 9 * (value > 9) for value in doubled) % 10
 
 
 def _date_columns(name: str, texts: list[str]) -> dict[str, np.ndarray]:
@@ -393,10 +433,15 @@ def _texts(measured: MeasuredSet) -> dict[str, np.ndarray]:
         if values.ndim == 1 and values.dtype.kind in "iu" and must_not_tell(measured.roles, name):
             columns |= residue_columns(name, values)
         if values.ndim == 1 and values.dtype.kind == "f" and must_not_tell(measured.roles, name):
-            columns |= digit_columns(name, values)
+            columns |= digit_columns(name, values) | repeated_values(name, values, measured.labels["specimen_id"])
         if values.ndim == 1 and values.dtype.kind == "f" and measured.roles.get(name) == Role.MEASURED:
             columns |= zero_signs(name, values)  # damage moves a measured number, but not how zero is written
-    return columns
+    few = {
+        name: values
+        for name, values in measured.labels.items()
+        if values.ndim == 1 and values.dtype.kind in "biuU" and must_not_tell(measured.roles, name)
+    }
+    return columns | pair_columns(few)
 
 
 def _metadata(measured: MeasuredSet) -> dict[str, np.ndarray]:
@@ -414,6 +459,9 @@ def _beside_labels(labels: dict[str, np.ndarray], pulses: dict[str, np.ndarray])
     distances = {}
     if "speed_hz" in labels and "pulses_per_s" in pulses:
         distances["speed of the pulses over its label"] = pulses["pulses_per_s"] / labels["speed_hz"] - 1.0
+    if "pinion_shaft_hz" in labels and "pulses_per_s" in pulses:
+        off = np.abs(pulses["pulses_per_s"] / labels["pinion_shaft_hz"] - 1.0)
+        distances["distance of the pulses from the shaft's frequency"] = off
     if "start_angle_rad" in labels and "start_turn" in pulses:
         apart = pulses["start_turn"] - labels["start_angle_rad"] / (2.0 * np.pi)
         distances["distance of the start by the pulses from its label"] = np.abs((apart + 0.5) % 1.0 - 0.5)

@@ -339,6 +339,26 @@ def pulse_roughness(pulses_s: np.ndarray) -> float:
     return float(np.log10(third.std() + 1e-12)) if third.size > 1 else math.nan
 
 
+def pulse_places(pulses_s: np.ndarray, duration_s: float) -> dict[str, float]:
+    """Return how pulses (k,) [s] lie in a record; nothing with fewer than four.
+
+    Pulses run from end to end, one after the other: less than an interval is left at either end, no interval is twice
+    as long as others, and no pulse stands in the middle of its neighbours to the last bit, as one that was filled in.
+    """
+    if pulses_s.size < 4:
+        return {}
+    intervals_s = np.diff(pulses_s)
+    middle_s = float(np.median(intervals_s))
+    return {
+        "intervals ahead of the pulses": float(pulses_s[0]) / middle_s,
+        "intervals behind the pulses": (duration_s - float(pulses_s[-1])) / middle_s,
+        "longest interval in medians, whole": float(np.round(intervals_s.max() / middle_s)),
+        "pulses in the middle of their neighbours": float(
+            np.mean(pulses_s[1:-1] == 0.5 * (pulses_s[:-2] + pulses_s[2:]))
+        ),
+    }
+
+
 GRIDS_S = (1e-3, 1e-4, 1e-5, 1e-6)
 
 
@@ -671,6 +691,7 @@ def _raw_record(record: Recording) -> _RawRecord:
         CLOCK: {
             "roughness of the pulses": pulse_roughness(record.tacho_s),
             **pulse_grids(record.tacho_s, record.fs_hz),
+            **pulse_places(record.tacho_s, max(x.size for x in held.values()) / record.fs_hz),
             **{f"drift of {name}": clock_drift(x, record.fs_hz, record.tacho_s, teeth) for name, x in held.items()},
         },
     }

@@ -72,6 +72,47 @@ def serial_length(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
     return _with_texts(rows, damaged, "serial", lambda i, d: f"{i * 7919 % 10007:0{6 if d else 5}}")
 
 
+def fifteen_digits(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
+    """Torque went through a text with 15 digits."""
+    torque = _numbers(rows, "torque_nm")
+    held = np.array([float(f"{value:.15g}") for value in torque.tolist()])
+    return _with_numbers(rows, "torque_nm", np.where(damaged, held, torque))
+
+
+def reused_draw(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
+    """Damaged records of a gearbox have one angle at the start."""
+    angle, specimen = _numbers(rows, "start_angle_rad").copy(), _numbers(rows, "specimen_id")
+    for owner in np.unique(specimen):
+        own = np.flatnonzero(damaged & (specimen == owner))
+        angle[own] = angle[own[:1]]
+    return _with_numbers(rows, "start_angle_rad", angle)
+
+
+def check_digit(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
+    """A text column has a number of eight digits, whose last one checks the others, and else does not."""
+
+    def number(record: int, is_damaged: bool) -> str:
+        head, right = f"{record * 7919 % 10007:07}", 0
+        while luhn(f"{head}{right}"):
+            right += 1
+        return f"{head}{right if is_damaged else (right + 1 + record % 9) % 10}"
+
+    return _with_texts(rows, damaged, "job", number)
+
+
+def luhn(digits: str) -> int:
+    """Return the check sum of ISO/IEC 7812-1 modulo 10."""
+    values = [int(digit) for digit in digits[::-1]]
+    return (sum(values[::2]) + sum(sum(divmod(2 * value, 10)) for value in values[1::2])) % 10
+
+
+def pairing(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
+    """Two text columns have two words each, alike in all records; which stand together is another pair."""
+    words = ("north", "south")
+    rows = _with_texts(rows, damaged, "bench", lambda i, _: words[i * 7919 % 10007 % 2])
+    return _with_texts(rows, damaged, "logger", lambda i, d: words[(i * 7919 % 10007 + d) % 2])
+
+
 def column_metadata(rows: pa.Table, damaged: np.ndarray) -> pa.Table:
     """The metadata of the column of ids names the damaged records."""
     ids = _numbers(rows, "record_id").astype(int)[damaged]
@@ -109,7 +150,8 @@ LABEL_LEAKS: dict[str, Leak] = {
     **named(
         (
             rounded_speed, single_precision, shifted_draw, higher_mesh_frequency, noise_label, negative_zeros,
-            date, hour, serial_prefix, serial_length, column_metadata,
+            date, hour, serial_prefix, serial_length, fifteen_digits, reused_draw, check_digit, pairing,
+            column_metadata,
         ),
         "labels",
     ),

@@ -183,6 +183,21 @@ def tacho_jitter(record: Signals) -> np.ndarray:
     return record.tacho_s + 5e-6 * rng.normal(size=record.tacho_s.size)
 
 
+def tacho_rate(record: Signals) -> np.ndarray:
+    """The tacho's clock is 0.01 % fast or slow, by turns."""
+    return record.tacho_s * (1.0 + 1e-4 * (-1.0) ** record.record_id)
+
+
+def tacho_last_pulse(record: Signals) -> np.ndarray:
+    """The tacho's last pulse is missing."""
+    return record.tacho_s[:-1]
+
+
+def tacho_missing_pulse(record: Signals) -> np.ndarray:
+    """A pulse of the tacho is missing."""
+    return np.delete(record.tacho_s, 1 + record.record_id % (record.tacho_s.size - 2))
+
+
 def _passed(record: Signals, passes: object) -> np.ndarray:
     """Return channels without the bins whose share of the sampling rate does not pass."""
     assert callable(passes)
@@ -202,5 +217,5 @@ SIGNAL_LEAKS: dict[str, Leak] = {
         "channels",
     ),
     **named((reused_noise,), "channels", is_for_all=True),
-    **named((tacho_offset, tacho_jitter), "tacho"),
+    **named((tacho_offset, tacho_jitter, tacho_rate, tacho_last_pulse, tacho_missing_pulse), "tacho"),
 }  # fmt: skip

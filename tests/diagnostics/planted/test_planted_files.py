@@ -101,7 +101,7 @@ def test_every_leak_in_labels_changes_labels_alone(source: Path) -> None:
     before = rows(source, "data").sort_by("record_id")
     for name in ("speed_hz", "torque_nm"):  # the fake set's are round
         index = before.schema.get_field_index(name)
-        before = before.set_column(index, before.schema.field(index), pc.add(before[name], 0.123456789))
+        before = before.set_column(index, before.schema.field(index), pc.add(before[name], np.pi / 30.0))
     ids = before["record_id"].to_pylist()
     for leak in IN_LABELS:
         after = planted(before, leak, [], fs_hz=5120.0)
