@@ -90,6 +90,7 @@ from diagnostics.training.referenced import log_values
 from diagnostics.training.splits import SpecimenSplit
 from siggen.errors import DatasetError, UsageError
 from siggen.file_writing import write_file
+from siggen.life.pitting import TORQUE_EXPONENT
 from siggen.plain_json import json_text
 
 CHUNK = 400
@@ -455,8 +456,7 @@ def pace(config: Mapping[str, Any], changes: Mapping[str, Any]) -> float:
     histories = [load or [[1.0, 1.0]] for load in ({**life, **changes.get("life", {})}["history"], life["history"])]
     if any(len(block) > 2 for load in histories for block in load):
         return 1.0
-    given = life["damage"]["torque_exponent"]
-    exponent = 0.5 * sum(given) if isinstance(given, list) else given  # gearboxes draw theirs: the middle
+    exponent = TORQUE_EXPONENT.at(0.5)  # gearboxes draw theirs: the middle
     wear, usual = (sum(h * ratio**exponent for h, ratio in load) / sum(h for h, _ in load) for load in histories)
     return float(wear / usual)
 

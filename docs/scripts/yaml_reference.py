@@ -47,7 +47,7 @@ A word stands for the numbers of its line. Keys next to it go first: `{model: la
 EXAMPLES = {
     "splits": "splits: {train: 10, validation: 5, test: 5}",
     "gears": "gears: {module_mm: 2.5, face_width_mm: 20, pinion: {teeth: 23, bore_radius_mm: 12}}",
-    "stiffness": "stiffness: {beam: rack_trochoid, coupling: none}",
+    "stiffness": "stiffness: {beam: rack_trochoid}",
     "dynamics": "dynamics: {friction: {oil: ISO VG 100}, mesh: {tip_relief_um: [2, 10]}}",
     "operating_points": "operating_points: [{speed_hz: [14, 37], torque_nm: 40}]",
     "states": "states: {worse: {grows: slight, damage: {face_share: 0.9}}}",

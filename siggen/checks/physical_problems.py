@@ -381,17 +381,15 @@ def _coupling_problems(mesh: PossibleMesh, gearbox: PossibleGearbox) -> Iterator
                 mesh_stiffness(pair, _one_pitch_rad(pair), options)
         except StiffTeethError:
             stiff = "whose teeth deflect less than their neighbour deflects them"
-            received = f"'{gearbox.config.stiffness.coupling}' with beam: {options.beam}, {stiff}"
+            received = f"'{options.beam}', {stiff}"
             low, high = sorted((pair.pinion.teeth, pair.gear.teeth))
             if high > USUAL_RATIO * low:
                 name = GEAR if pair.gear.teeth == high else PINION
-                received = f"{high} against {low}, a ratio of {high / low:.3g}; stiffness.coupling is then {received}"
-                allowed = f"allowed: a ratio up to {USUAL_RATIO:g}, as pairs have; else coupling: none"
+                received = f"{high} against {low}, a ratio of {high / low:.3g}; stiffness.beam is then {received}"
+                allowed = f"allowed: a ratio up to {USUAL_RATIO:g}, as pairs have; or beam: rack_trochoid"
                 yield Problem(f"{mesh.at}gears.{name}.teeth", received, allowed)
                 continue
-            yield Problem(
-                "stiffness.coupling", received, "allowed: none, or larger bores, or a softer beam such as calibrated"
-            )
+            yield Problem("stiffness.beam", received, "allowed: larger bores, or another beam, such as rack_trochoid")
 
 
 def _one_pitch_rad(pair: GearPair) -> NDArray[np.float64]:

@@ -172,8 +172,6 @@ class _SizesCompared:
         for at, pair in self.meshes:
             module = 1e3 * pair.pinion.module_m
             yield from self.of(f"{at}gears.module_mm", "module [mm]", (0.3, 30.0), "is it in mm?")
-            what, path = "Young's modulus [GPa]", f"{at}gears.youngs_modulus_gpa"
-            yield from self.of(path, what, (1.0, 230.0), "is it in GPa?")
             what, path = "face width over module", f"{at}gears.face_width_mm"
             yield from self.of(path, what, (1.5, 40.0), "is it in mm?", module)
             for side in Side:

@@ -19,7 +19,6 @@ from siggen.config.dynamics import (
     RotorSection,
     Shafts,
     ShaftSection,
-    Sizing,
     UnbalanceSection,
     by_reference,
 )
@@ -70,7 +69,6 @@ __all__ = [
     "ShaftLines",
     "ShaftSection",
     "Shafts",
-    "Sizing",
     "SpeedVariation",
     "Splits",
     "Stage",

@@ -39,7 +39,7 @@ WORDS = ("oil",)
 """Keys that hold a word and may be changed; all others hold numbers."""
 FIXED = ("position_mm", "span_mm", "integration_tolerance", "steps_per_sample")
 """Numbers that say where a channel is or how it is computed."""
-MADE = ("dynamics.sizing.", "dynamics.rated_torque_nm", "dynamics.rated_speed_hz")
+MADE = ("dynamics.rated_torque_nm", "dynamics.rated_speed_hz")
 """How a gearbox was made, and for which load, which no state changes."""
 HOW = ("times", "add")
 NUMBERS = (float, Each, *DRAWN)

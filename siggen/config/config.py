@@ -242,9 +242,8 @@ def _identity_content(value: Any) -> Any:
             found: dict[str, Any] = {}
             named = "" if value.understood_kind else "kind"
             for name, field in type(value).model_fields.items():
-                item, default = value.identity_value(name), field.get_default(call_default_factory=True)
+                item, default = getattr(value, name), field.get_default(call_default_factory=True)
                 content = _identity_content(item)
-                # what is named and means the same does not count either (`identity_value`)
                 counts = item != default and (bool(content) or not isinstance(default, Section))
                 found |= {name: content} if counts or name == named else {}
             return found

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from siggen.damage.ball_geometry import BallGeometry
 from siggen.errors import Problem
-from siggen.keys.distributions import Choice, LogUniform, Uniform
+from siggen.keys.distributions import Uniform
 from siggen.keys.number import Each, Number, Within
 from siggen.keys.parser import Parser
 from siggen.keys.problems import nearest_word, received_text, refusal
@@ -122,9 +122,7 @@ class Friction(Section):
     )
 
 
-SERIES = (60, 62, 63)
-"""Of deep groove ball bearings in catalogues: light, medium, heavy."""
-SIZED_TEXT = "null: by rated_torque_nm and sizing"
+SIZED_TEXT = "null: by rated_torque_nm"
 
 
 class ShaftSection(Section):
@@ -169,7 +167,7 @@ RATED_LOAD = (
     "of the first shaft: masses, inertias, bearings, couplings and shafts left out follow from both; torque "
     "null: own defaults, speed null: the highest"
 )
-RATED_SPEED, SIZING = "rated_speed_hz", "sizing"
+RATED_SPEED = "rated_speed_hz"
 RATED_SPEED_TEXT = AllowedText("a number above 0 up to 1e+05, or null")
 RATED_TEXT = AllowedText("a number above 0 up to 1e+06, or null")
 
@@ -240,50 +238,6 @@ class RotorSection(Section):
     bearing: BearingSection = Field(default=BearingSection(), description="what its shaft turns in")
 
 
-CHOSEN = (
-    "what makers choose: design over rated torque; shear at shaft ends; shaft length over bearing distance; "
-    "series of ball bearings, if they fit; radial play, below 0 preload; damping over stiffness"
-)
-
-
-class Sizing(Section):
-    """What makers choose, drawn for every gearbox whose sizes follow from its rated torque (assumed).
-
-    Design torque: application factors of ISO 6336-6 for uniform and for shocking loads are 1 to 1.75. Shear: usual of
-    shafts that bend too. Damping over stiffness: 0.25e-5 to 2.5e-5 s of rolling bearings (Kraemer, Dynamics of rotors
-    and foundations, 1993; from memory).
-    """
-
-    torque_factor: Annotated[Number, Within(least=0.5, most=5)] = Field(
-        default=Uniform(low=1.0, high=1.75), description=CHOSEN
-    )
-    shear_n_per_mm2: Annotated[Number, Within(least=2, most=200)] = Field(
-        default=Uniform(low=12.0, high=25.0), description=CHOSEN
-    )
-    length_factor: Annotated[Number, Within(least=1, most=5)] = Field(
-        default=Uniform(low=1.0, high=1.4), description=CHOSEN
-    )
-    series: Annotated[Number, Within(least=60, most=63)] = Field(
-        default=Choice(values=(60.0, 62.0, 63.0)),
-        description=CHOSEN,
-    )
-    clearance_um: Annotated[Number, Within(least=-100, most=1000), Usual(-20, 200)] = Field(
-        default=Uniform(low=-5.0, high=15.0), description=CHOSEN
-    )
-    damping_time_s: Annotated[Number, Within(least=0), Usual(5e-7, 2e-4)] = Field(
-        default=LogUniform(low=2.5e-6, high=2.5e-5), description=CHOSEN
-    )
-
-    @model_validator(mode="after")
-    def _series_of_a_catalogue(self) -> Sizing:
-        values = self.series.values if isinstance(self.series, Choice) else (self.series,)
-        if wrong := [value for value in values if value not in SERIES]:
-            shown = f"{wrong[0]:g}" if isinstance(wrong[0], float) else str(wrong[0])
-            allowed = f"allowed: {', '.join(map(str, SERIES))}, or one_of some"
-            raise refusal([Problem("series", shown, allowed)])
-        return self
-
-
 class CouplingSection(Section):
     """Torsional spring and damper between a gear and the machine on its shaft."""
 
@@ -335,7 +289,6 @@ class Dynamics(Section):
         default=None,
         description=RATED_LOAD,
     )
-    sizing: Sizing = Field(default=Sizing(), description="how each gearbox is made for its rated torque")
 
     @model_validator(mode="after")
     def _nulls_follow_from_something(self) -> Dynamics:

@@ -145,16 +145,13 @@ class ToothForm(Section):
         "normal section",
     )
     face_width_mm: Annotated[Number, Within(above=0)] = Field(description="width of the teeth in contact")
-    youngs_modulus_gpa: Annotated[Number, Within(above=0)] = Field(
-        default=206.0, description="Young's modulus of both gears"
-    )
     centre_distance_mm: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
         default=None, description="null: where the profile shifts mesh without backlash"
     )
 
 
 class Pair(ToothForm):
-    """One pair: common tooth form, material, and the two wheels. The pinion drives."""
+    """One pair: common tooth form, and the two wheels of steel. The pinion drives."""
 
     pinion: Wheel = Field(description="the driving gear")
     gear: Wheel = Field(description="the driven gear")

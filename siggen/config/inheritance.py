@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from siggen.config.dynamics import RATED, RATED_SPEED, SIZING
+from siggen.config.dynamics import RATED, RATED_SPEED
 from siggen.config.presets import config_file
 from siggen.errors import ConfigError, Problem, UsageError
 from siggen.keys.data_file import is_file
@@ -18,7 +18,7 @@ from siggen.names import SHAFT_OF
 EXTENDS = "extends"
 REPLACED = ("gears", "planetary")
 """Sections that a machine takes the place of."""
-REPLACED_OF_DYNAMICS = ("pinion", "gear", "shafts", RATED, RATED_SPEED, SIZING)
+REPLACED_OF_DYNAMICS = ("pinion", "gear", "shafts", RATED, RATED_SPEED)
 SIZED: Mapping[str, Any] = {
     **{
         gear: {

@@ -15,7 +15,6 @@ from siggen.keys.problems import received_text, refusal
 from siggen.keys.section import Real, Section, Whole
 from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
-from siggen.life.pitting import Pitting
 
 MOST_H = 1e7
 Hours = Annotated[Real, Field(gt=0, le=MOST_H)]
@@ -48,7 +47,6 @@ JITTER = 0.15
 class Life(Section):
     """How gearboxes wear, when they are looked at, and what ends them."""
 
-    damage: Pitting = Field(default=Pitting(), description="law by which damage begins and grows")
     reference_torque_nm: Annotated[Real, Field(gt=0, le=1e8)] = Field(
         description="torque on the input shaft to which the law's turns belong"
     )

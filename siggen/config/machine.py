@@ -321,9 +321,7 @@ class Stage(Section):
         return self.span_mm == IDLER
 
 
-OF_BOTH_MESHES = (
-    "module_mm", "pressure_angle_deg", "youngs_modulus_gpa",
-)  # fmt: skip
+OF_BOTH_MESHES = ("module_mm", "pressure_angle_deg")
 """Numbers of a gear that the section of its mesh holds; both meshes of an idler have them alike."""
 
 

@@ -18,7 +18,7 @@ from math import isfinite, sqrt
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from siggen.arrays import FloatArray
 from siggen.damage.fault import Fault
@@ -61,7 +61,7 @@ from siggen.keys.drawing import draw
 from siggen.keys.number import Number, Within, at, bounds, constant, number_text
 from siggen.keys.scaling import Grows
 from siggen.keys.section import Real, Section, Whole
-from siggen.keys.teeth import DAMAGED_TEETH, STAGES, Stages, Teeth, refuse_stages, stage_of
+from siggen.keys.teeth import DAMAGED_TEETH, Teeth
 from siggen.keys.usual import Usual
 from siggen.keys.wording import AllowedText
 from siggen.names import PINION, Side
@@ -296,7 +296,6 @@ class IrregularSpalls(Fault):
     kind: Literal["irregular"] = "irregular"
     gear: AnyGear = Field(default=PINION, description=DAMAGED_GEAR)
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
-    stages: Stages = Field(default=1.0, description=STAGES)
     centre_height_mm: Middle = Field(
         default=START,
         description=MIDDLE_HEIGHT,
@@ -321,18 +320,13 @@ class IrregularSpalls(Fault):
     )
     floor: FloorShape = Field(default="dish", description=FLOOR)
 
-    @model_validator(mode="after")
-    def _a_stage_for_each_tooth(self) -> IrregularSpalls:
-        refuse_stages(self.stages, self.teeth)
-        return self
-
     def key_that_adds_nothing(self, milder: Fault) -> str | None:
         """Return the size that is smaller, for spalls in no direction larger than the milder ones at the same place."""
         return size_that_adds_nothing(self, milder, SIZES)
 
     def drawn(self, growth: Growth) -> Parts:
         """Return a spall on each damaged tooth, with the draws of the first one that it has grown from."""
-        return tuple(_on_tooth(self, growth, tooth, index) for index, tooth in enumerate(growth.teeth(self)))
+        return tuple(_on_tooth(self, growth, tooth) for tooth in growth.teeth(self))
 
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:
         """Yield what is wrong at the bounds, whatever the waves turn out to be: they never go beyond `WAVE_LIMIT`."""
@@ -361,10 +355,10 @@ class IrregularSpalls(Fault):
         yield from (self.skew_mm_per_10mm, self.waviness)
 
 
-def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int, index: int) -> IrregularSpall:
+def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int) -> IrregularSpall:
     pair, name = growth.pair, f"irregular.{model.gear}.{tooth}"
     uniform = growth.place(model.gear, IrregularSpalls)
-    size = _staged(draw(model, uniform, name), at(stage_of(model.stages, index), uniform(f"{name}.stages")))
+    size = draw(model, uniform, name)
     gear, width = pair.member(Side(model.gear)), pair.face_width_m
     length, across = MM * constant(size.profile_length_mm), width * constant(size.face_share)
     middle = 0.5 * width if size.face_centre_mm is None else MM * constant(size.face_centre_mm)
@@ -390,12 +384,6 @@ def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int, index: int) ->
         size.floor,
         milder,
     )
-
-
-def _staged(size: IrregularSpalls, stage: float) -> IrregularSpalls:
-    """Return drawn sizes at a stage: all lengths shrink alike, and the depth that follows from them."""
-    given = {key: value for key in SIZES if (value := getattr(size, key)) is not None}
-    return size if stage == 1.0 else size.model_copy(update={key: stage * constant(v) for key, v in given.items()})
 
 
 def _milder(growth: Growth, gear: str, tooth: int) -> IrregularSpall | None:

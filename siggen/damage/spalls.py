@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from siggen.damage.fault import Fault
 from siggen.damage.flank_damage import damage_problems
@@ -43,9 +43,9 @@ from siggen.damage.part import Damage, Parts
 from siggen.errors import Problem
 from siggen.gears.gear_pair import GearPair
 from siggen.keys.drawing import corners, draw
-from siggen.keys.number import LOW, at, bounds, constant
+from siggen.keys.number import LOW, bounds, constant
 from siggen.keys.section import Section
-from siggen.keys.teeth import DAMAGED_TEETH, STAGES, Stages, Teeth, refuse_stages, stage_of
+from siggen.keys.teeth import DAMAGED_TEETH, Teeth
 from siggen.names import PINION, Side
 
 
@@ -176,12 +176,6 @@ class Spalls(SpallSize, Fault):
     kind: Literal["spall"] = "spall"
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
     height_reading: HeightReading = Field(default="arc", description=READING)
-    stages: Stages = Field(default=1.0, description=STAGES)
-
-    @model_validator(mode="after")
-    def _a_stage_for_each_tooth(self) -> Spalls:
-        refuse_stages(self.stages, self.teeth)
-        return self
 
     def key_that_adds_nothing(self, milder: Fault) -> str | None:
         """Return the size that is smaller, for spalls in no direction larger than the milder ones at the same place."""
@@ -189,7 +183,7 @@ class Spalls(SpallSize, Fault):
 
     def drawn(self, growth: Growth) -> Parts:
         """Return a spall on each damaged tooth, with the draws of the first spall that it has grown from."""
-        return tuple(self._on_tooth(growth, tooth, index) for index, tooth in enumerate(growth.teeth(self)))
+        return tuple(self._on_tooth(growth, tooth) for tooth in growth.teeth(self))
 
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:
         """Yield what is wrong with a spall by itself."""
@@ -203,12 +197,6 @@ class Spalls(SpallSize, Fault):
         """Return whether it is a rectangle, and whether it may go through the face."""
         return self.parallel(face_width_mm)
 
-    def _on_tooth(self, growth: Growth, tooth: int, index: int) -> FlankSpall:
+    def _on_tooth(self, growth: Growth, tooth: int) -> FlankSpall:
         uniform, name = growth.place(self.gear, Spalls), f"spall.{self.gear}.{tooth}"
-        stage = at(stage_of(self.stages, index), uniform(f"{name}.stages"))
-        return spall_on_tooth(growth.pair, draw(self, uniform, name)._at_stage(stage), self.height_reading, tooth)
-
-    def _at_stage(self, stage: float) -> Spalls:
-        """Return drawn sizes at a stage: lengths and depth shrink alike."""
-        shrunk = {key: stage * constant(getattr(self, key)) for key in SIZE_KEYS}
-        return self if stage == 1.0 else self.model_copy(update=shrunk)
+        return spall_on_tooth(growth.pair, draw(self, uniform, name), self.height_reading, tooth)

@@ -38,7 +38,7 @@ from siggen.keys.yaml_source import read_yaml
 from siggen.names import EITHER, Names, Side
 from siggen.rig.bearings import BearingSize
 from siggen.rig.carried_over import carried_over
-from siggen.rig.sizes import bearings_of, is_sized, sized
+from siggen.rig.sizes import SIZING, bearings_of, is_sized, sized
 from siggen.seeding import Stream, generator, named_uniforms
 
 
@@ -129,9 +129,8 @@ def drawn_bearings(config: Config, specimen_id: int) -> dict[Side, tuple[Bearing
     gears = draw(own.gears, named_uniforms(own.seed, Stream.GEARS, specimen_id), "gears")
     supports = named_uniforms(own.seed, Stream.SUPPORTS, specimen_id)
     found = bearings_of(own.dynamics, gears, supports)
-    play = own.dynamics.sizing.clearance_um
     return {
-        side: (one, at(play, supports(f"dynamics.{side}.bearing.geometry.clearance_um")))
+        side: (one, at(SIZING.clearance_um, supports(f"dynamics.{side}.bearing.geometry.clearance_um")))
         for side, one in zip(Side, found, strict=True)
         if one is not None
     }

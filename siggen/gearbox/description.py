@@ -58,7 +58,7 @@ CHANGED = "A state that changes keys is the healthy gearbox with the same draws,
 
 LIVES = (
     "Every gearbox is new at its first inspection and runs until a tooth fails, or until it is taken out. Pits begin, "
-    "grow and spread by the law in `life.damage`; between two inspections damage never shrinks."
+    "grow and spread by the law of siggen.life.pitting; between two inspections damage never shrinks."
 )
 
 

@@ -15,11 +15,12 @@ from siggen.damage.registry import HEALTHY
 from siggen.gearbox.drivetrain import drawn_gears
 from siggen.gearbox.teeth import gear_pair
 from siggen.keys.drawing import draw
-from siggen.keys.number import at, constant
+from siggen.keys.number import at
 from siggen.life.clock import Clock, LoadBlock
 from siggen.life.debris import counted_mg
 from siggen.life.flank import flanks
 from siggen.life.law import LifeCourse, Named, Wearing
+from siggen.life.pitting import TORQUE_EXPONENT, PittingCourse
 from siggen.names import Names, Side
 from siggen.seeding import Stream, named_generator, named_uniforms
 
@@ -104,10 +105,10 @@ def lived(config: Config, nominal: GearsSection, specimen_id: int) -> Lived:
     point = config.operating_points[0]
     of_point = named_uniforms(config.seed, Stream.OPERATING_POINT, specimen_id, 0)
     steady = at(point.speed_hz, of_point("speed_hz")), at(point.torque_nm, of_point("torque_nm"))
-    law = draw(life.damage, uniform, "damage")
-    clock = Clock(_blocks(life, *steady), constant(law.torque_exponent), at(life.scale, uniform("scale")))
+    exponent = at(TORQUE_EXPONENT, uniform("damage.torque_exponent"))
+    clock = Clock(_blocks(life, *steady), exponent, at(life.scale, uniform("scale")))
     share = at(FUNCTIONAL_SHARE, uniform("functional_share"))
-    course = law.course(wearing, share)
+    course = PittingCourse(exponent, wearing, share)
     ages_h, observed_h, event = _observed(life, uniform, clock.age_h(course.ends.functional))
     return Lived(course, wearing.named, clock, share, ages_h, observed_h, event)
 

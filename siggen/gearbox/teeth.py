@@ -31,7 +31,7 @@ from siggen.gears.errors import (
     with_errors,
 )
 from siggen.gears.face_shares import FaceShares
-from siggen.gears.gear_pair import GearPair, SpurGear
+from siggen.gears.gear_pair import STEEL_PA, STEEL_POISSON, GearPair, SpurGear
 from siggen.gears.missing_material import MissingMaterial
 from siggen.gears.planetary import InternalPair
 from siggen.gears.spur_gear import transverse_gear
@@ -44,10 +44,7 @@ from siggen.mesh.tooth_law import DampingLaw, FlankFriction, ToothLaw
 from siggen.names import Side
 from siggen.seeding import Stream, named_generator
 
-# From drawn sections (mm, degrees, GPa) to gear pairs in SI, and how their teeth bend.
-
-POISSON_RATIO = 0.3
-"""Of steel and cast iron; 0.03 more or less moves contact and shear by 2 %."""
+# From drawn sections (mm, degrees) to gear pairs in SI, and how their teeth bend.
 
 
 def gear_pair(gears: Pair) -> GearPair:
@@ -63,8 +60,8 @@ def gear_pair(gears: Pair) -> GearPair:
         pinion=_spur_gear(gears, gears.pinion),
         gear=_spur_gear(gears, gears.gear),
         face_width_m=constant(gears.face_width_mm) / 1e3,
-        youngs_modulus_pa=constant(gears.youngs_modulus_gpa) * 1e9,
-        poisson_ratio=POISSON_RATIO,
+        youngs_modulus_pa=STEEL_PA,
+        poisson_ratio=STEEL_POISSON,
         centre_distance_m=None if distance_mm is None else constant(distance_mm) / 1e3,
         helix_rad=math.radians(constant(gears.helix_deg)),
     )
@@ -85,7 +82,8 @@ def _spur_gear(gears: Pair, wheel: Wheel) -> SpurGear:
 
 def stiffness_options(stiffness: Stiffness) -> StiffnessOptions:
     """Return the options of the stiffness model that a section `stiffness` names."""
-    return StiffnessOptions(stiffness.beam, coupling=stiffness.coupled_by)
+    # the plain sum of pairs belongs to models of the literature
+    return StiffnessOptions(stiffness.beam, coupling="body" if stiffness.beam == "calibrated" else "none")
 
 
 def mesh_options(pair: GearPair, options: StiffnessOptions) -> StiffnessOptions:

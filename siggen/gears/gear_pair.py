@@ -25,6 +25,7 @@ MIN_TEETH = 5
 ADDENDUM, CLEARANCE = 1.0, 0.25
 """Of the basic rack, in modules (ISO 53, profile A)."""
 STEEL_PA, STEEL_POISSON = 206e9, 0.3
+"""Young's modulus (ISO 6336-1) and Poisson's ratio; 0.03 more or less of this moves contact and shear by 2 %."""
 WIDTH_MODULES, BORE_SHARE = 8.0, 0.4
 """Of a pair of which a drawing says no more: face width in modules, bore over root circle (assumed)."""
 REFERENCE_BAND = 1.0 / 40.0

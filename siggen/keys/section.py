@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -20,10 +20,6 @@ class Section(BaseModel):
 
     # Built with the first file that is read: workers, which get a design that was read, never build one.
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True)
-
-    def identity_value(self, key: str) -> Any:
-        """Return what the value of a key stands for, which is what counts in an identity; as a rule the value."""
-        return getattr(self, key)
 
 
 Real = Annotated[float, Field(strict=True)]

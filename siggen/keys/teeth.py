@@ -1,21 +1,16 @@
-"""Which teeth of a gear are damaged, and how far: neighbours, drawn per gearbox if it is a choice, or their indices.
-
-Stages say how far the damage of each tooth has grown, over the sizes that a state gives.
-"""
+"""Which teeth of a gear are damaged: neighbours, drawn per gearbox if it is a choice, or their indices."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, TypeAlias
+from typing import Annotated, Any
 
 from pydantic import Field
 
-from siggen.errors import Problem, counted
+from siggen.errors import Problem
 from siggen.keys.distributions import Choice, distribution
-from siggen.keys.number import Each, Number, Within
 from siggen.keys.parser import Parser
 from siggen.keys.problems import received_text, refusal
-from siggen.keys.usual import Usual
 
 TeethValue = int | tuple[int, ...] | Choice
 DAMAGED_TEETH = "number of neighbouring teeth, the first drawn; a choice of numbers (drawn); or a list of indices"
@@ -67,26 +62,3 @@ def drawn_teeth(teeth: TeethValue, u: float) -> int | tuple[int, ...]:
 
 
 Teeth = Annotated[TeethValue, TeethParser()]
-
-Stages: TypeAlias = Annotated[Number | Each, Within(above=0, most=1, each=True), Usual(0.02, 1)]
-
-STAGES = "lengths and depth of each tooth's spall over those given here; {each: [a, b]}: one for each tooth"
-
-
-def stage_of(stages: Number | Each, index: int) -> Number:
-    """Return the stage of the damaged tooth of this index, from 0."""
-    return stages.each[index] if isinstance(stages, Each) else stages
-
-
-def refuse_stages(stages: Number | Each, teeth: TeethValue) -> None:
-    """Raise a refusal of a list that has not one stage for each damaged tooth."""
-    if not isinstance(stages, Each):
-        return
-    received = f"one for each of {len(stages.each)}"
-    if isinstance(teeth, Choice):
-        allowed = "allowed: one number or range where the number of teeth is drawn (teeth)"
-        raise refusal([Problem("stages", received, allowed)])
-    count = teeth if isinstance(teeth, int) else len(teeth)
-    if len(stages.each) != count:
-        hit = counted(count, "damaged tooth", "damaged teeth")
-        raise refusal([Problem("stages", received, f"allowed: one for each of the {hit} (teeth), or one number")])

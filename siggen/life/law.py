@@ -1,6 +1,6 @@
 """What the rest of siggen asks a law of life: how damage begins and grows on one gearbox, and when that ends it.
 
-A law is one module with a section. It counts in *damage time*: turns of the pinion at the reference torque (Miner's
+A law is one module. It counts in *damage time*: turns of the pinion at the reference torque (Miner's
 sum), divided by the scale of the rig. Which age that is follows from the history of load, and is no business of a law.
 So truth at an age depends on configuration, gearbox and age alone, never on a schedule. A law of cracks may stand
 beside the one of pits.
@@ -8,7 +8,6 @@ beside the one of pits.
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -17,8 +16,6 @@ import numpy as np
 
 from siggen.arrays import FloatArray
 from siggen.damage.fault import Fault
-from siggen.keys.number import Number
-from siggen.keys.section import Section
 from siggen.life.flank import Flank
 from siggen.names import Side
 
@@ -104,13 +101,3 @@ class LifeCourse(Protocol):
 
     def damage(self, time: float) -> Fault | None:
         """Return the section of damage of a state at a damage time [turns]; None before the first."""
-
-
-class Law(Section):
-    """Base of the sections of laws; the field `kind` is a Literal of one word."""
-
-    torque_exponent: Number
-
-    @abstractmethod
-    def course(self, wearing: Wearing, functional_share: float) -> LifeCourse:
-        """Return the damage of a gearbox that fails at a share of a flank."""

@@ -9,33 +9,35 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
 
 from siggen.arrays import FloatArray
 from siggen.damage.irregular import ListedIrregular
 from siggen.damage.pits import ListedPits
 from siggen.keys.distributions import Uniform
-from siggen.keys.number import Number, Within, constant
-from siggen.keys.section import Real
-from siggen.keys.usual import Usual
 from siggen.life.flank import Flank
 from siggen.life.growth import STEP, Grown, Seeds, grown
 from siggen.life.initiation import Begun, begun, tooth_scale
-from siggen.life.law import Ends, Law, Named, PartTruth, Picture, ToothTruth, Wearing
+from siggen.life.law import Ends, Named, PartTruth, Picture, ToothTruth, Wearing
 from siggen.life.outline import Edges, PitShape, drawn_shape, sizes_m, through, union_m2
 from siggen.life.outlook import Chances, Now, failing_times, through_share
 from siggen.life.picture import flank_png
 from siggen.names import Side
 
+SLOPE = 2.5
+"""Weibull slope of the first pit, of a tooth and of a gearbox."""
+TORQUE_EXPONENT = Uniform(low=4.3, high=8.8)
+"""Life falls with the torque to this power, until the first pit and after it; drawn per gearbox. 4.3: load and life of
+tested spur gears (NASA), 6.6 and 8.8: case-hardened flanks of ISO 6336-2 without pits and with some (memory)."""
 UNIT_REV = 6.9e6
 """Weibull scale of a gearbox's first pit, in turns of the pinion at reference torque."""
 RATE_PER_REV = 0.62e-6
 """Median growth of a pit's logarithm per turn of its gear at reference torque."""
+RATE_SD = 0.35
+"""Of that rate's logarithm from pit to pit."""
 WANDER_SD = 0.3
-"""Of that rate's logarithm over a pit's life; forgotten within 5e5 turns times scale (assumed)."""
+"""Of the rate's logarithm over a pit's life; forgotten within 5e5 turns times scale (assumed)."""
 FIRST_SHARE = 0.0045
 """Median share of a flank with which a pit begins."""
 FIRST_SHARE_SD = 0.5
@@ -48,27 +50,6 @@ FORESEEN, MORE, MOST_STEPS = 160, 160, 20_000
 """Steps of the grid that are integrated at first and added while no end is reached, and most of all."""
 ANY_PITS = 32
 """Pits of either gear of which an outlook takes how new ones spread."""
-
-
-class Pitting(Law):
-    """Pits that begin one by one and grow."""
-
-    kind: Literal["pitting"] = "pitting"
-    slope: Annotated[Real, Field(ge=0.5, le=100), Usual(0.5, 20)] = Field(
-        default=2.5, description="Weibull slope of the first pit, of a tooth and of a gearbox"
-    )
-    torque_exponent: Annotated[Number, Within(least=0, most=20), Usual(1, 20)] = Field(
-        default=Uniform(low=4.3, high=8.8),
-        description="life falls with this power of the torque; 4.3: tested spur gears (NASA); 6.6, 8.8: ISO "
-        "6336-2, case-hardened, without and with pits (memory)",
-    )
-    rate_sd: Annotated[Real, Field(ge=0, le=2), Usual(0.02, 2)] = Field(
-        default=0.35, description="standard deviation of the rate's logarithm from pit to pit"
-    )
-
-    def course(self, wearing: Wearing, functional_share: float) -> PittingCourse:
-        """Return the pits of a gearbox over its life."""
-        return PittingCourse(self, wearing, functional_share)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,14 +67,14 @@ class PitBirth:
 class PittingCourse:
     """Pits of one gearbox over damage time."""
 
-    law: Pitting
+    torque_exponent: float
     wearing: Wearing
     functional_share: float
 
     @cached_property
     def begins(self) -> list[Begun]:
         """When pits begin, by time; those too that begin after the end."""
-        return begun(self.wearing.flanks, self.wearing.nominal, UNIT_REV, self.law.slope, self.wearing.named)
+        return begun(self.wearing.flanks, self.wearing.nominal, UNIT_REV, SLOPE, self.wearing.named)
 
     @cached_property
     def ends(self) -> Ends:
@@ -162,13 +143,13 @@ class PittingCourse:
 
     def outlook(self, time: float, runs: int) -> FloatArray:
         """Return when the gearbox would fail in so many continuations from its true state (runs,) [turns]."""
-        lived, flanks, law = self._lived[0], self.wearing.flanks, self.law
+        lived, flanks = self._lived[0], self.wearing.flanks
         shares = lived.shares(time)
         own = np.flatnonzero(shares)
         sizes = [one.teeth for one in flanks]
-        eta = tooth_scale(UNIT_REV, self.wearing.nominal, law.slope)
+        eta = tooth_scale(UNIT_REV, self.wearing.nominal, SLOPE)
         hazards = [
-            (one.turns / eta) ** law.slope * one.area_m2 / nominal.area_m2
+            (one.turns / eta) ** SLOPE * one.area_m2 / nominal.area_m2
             for one, nominal in zip(flanks, self.wearing.nominal, strict=True)
         ]
         now = Now(
@@ -184,7 +165,7 @@ class PittingCourse:
             np.repeat(self._through_any, sizes, axis=0),
         )
         chances = Chances(
-            law.slope, FIRST_SHARE_SD, RATE_PER_REV, law.rate_sd, WANDER_SD,
+            SLOPE, FIRST_SHARE_SD, RATE_PER_REV, RATE_SD, WANDER_SD,
             self.functional_share,
         )  # fmt: skip
         return failing_times(now, chances, runs, self.wearing.named(f"outlook/{time!r}"))
@@ -198,7 +179,7 @@ class PittingCourse:
 
         def shape(flank: Flank, number: int) -> PitShape:
             named = partial(_numbered, self.wearing.named, f"{flank.gear}/{number}")
-            return drawn_shape(flank, constant(self.law.torque_exponent), named)
+            return drawn_shape(flank, self.torque_exponent, named)
 
         return np.array([
             [through_share(shape(flank, number), flank.area_m2) for number in range(ANY_PITS)]
@@ -266,8 +247,8 @@ class PittingCourse:
         size, rate = named("growth").standard_normal(2).tolist()
         share = self._first_share(one.gear) * np.exp(FIRST_SHARE_SD * size)
         owner = one.tooth + own * self.wearing.flanks[0].teeth
-        shape = drawn_shape(flank, constant(self.law.torque_exponent), named)
-        return PitBirth(one, owner, float(share), float(RATE_PER_REV * np.exp(self.law.rate_sd * rate)), shape)
+        shape = drawn_shape(flank, self.torque_exponent, named)
+        return PitBirth(one, owner, float(share), float(RATE_PER_REV * np.exp(RATE_SD * rate)), shape)
 
     def _named(self, one: Begun) -> Callable[[str], np.random.Generator]:
         return lambda name: self.wearing.named(f"{one.gear}/{one.tooth}/{one.number}/{name}")

@@ -9,21 +9,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import atan, cos, degrees, radians, tan
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from siggen.config import Dynamics, GearsSection, RotorSection, ShaftSection, Sizing
+from siggen.config import Dynamics, GearsSection, RotorSection, ShaftSection
 from siggen.config.config import OperatingRange
-from siggen.config.dynamics import RATED, RATED_SPEED, SIZING
+from siggen.config.dynamics import RATED, RATED_SPEED
 from siggen.config.inheritance import SIZED
 from siggen.damage.ball_geometry import BallGeometry
 from siggen.errors import Problem
-from siggen.keys.distributions import Uniform
+from siggen.keys.distributions import Choice, LogUniform, Uniform
 from siggen.keys.drawing import Uniforms, corners, draw
 from siggen.keys.merging import merged
-from siggen.keys.number import MIDDLE, Number, at, bounds, constant
+from siggen.keys.number import MIDDLE, Number, Within, at, bounds, constant
 from siggen.keys.problems import received_text
+from siggen.keys.section import Section
 from siggen.names import SHAFT_OF
 from siggen.rig.bearings import BearingSize
 from siggen.rig.rig import Pair, Rig, RigDesign
@@ -34,6 +35,30 @@ OTHERS = ("machine", "planetary")
 OF_MAKERS = (".torque_factor", ".shear_n_per_mm2", ".length_factor", ".series", ".bearing_span_mm", ".diameter_mm")
 """Numbers that rotors and shafts follow from."""
 AT = "dynamics.sizing"
+"""What their uniforms are named after."""
+Drawn = Annotated[Number, Within()]
+
+
+class Sizing(Section):
+    """What makers choose, drawn for every gearbox whose sizes follow from its rated torque (assumed).
+
+    Design torque over the rated one: application factors of ISO 6336-6 for uniform and for shocking loads are 1 to
+    1.75. Shear at shaft ends: usual of shafts that bend too. Length of a shaft over the distance of its bearings.
+    Series of ball bearings (light, medium, heavy); another, or rollers, where balls do not last 20,000 h or fit. Radial
+    play; below 0: preload. Damping over stiffness: 0.25e-5 to 2.5e-5 s of rolling bearings (Kraemer, Dynamics of rotors
+    and foundations, 1993; from memory).
+    """
+
+    torque_factor: Drawn = Uniform(low=1.0, high=1.75)
+    shear_n_per_mm2: Drawn = Uniform(low=12.0, high=25.0)
+    length_factor: Drawn = Uniform(low=1.0, high=1.4)
+    series: Drawn = Choice(values=(60.0, 62.0, 63.0))
+    clearance_um: Drawn = Uniform(low=-5.0, high=15.0)
+    damping_time_s: Drawn = LogUniform(low=2.5e-6, high=2.5e-5)
+
+
+SIZING = Sizing()
+"""Of every set."""
 
 
 def with_sizes(raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[Problem]]:
@@ -80,18 +105,9 @@ def with_sizes(raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[Problem]]:
 def _unused(dynamics: Mapping[str, Any], beside: str) -> Iterator[Problem]:
     """Yield what says how a gearbox is made for a rated load, beside what gives its sizes itself."""
     allowed = "allowed with gears alone; here give masses, bearings and couplings themselves"
-    for key in (RATED, RATED_SPEED, SIZING):
-        given = dynamics.get(key)
-        # a stored configuration states every key, so a default is nobody's slip
-        if given is not None and not (key == SIZING and _is_default(given)):
+    for key in (RATED, RATED_SPEED):
+        if (given := dynamics.get(key)) is not None:
             yield Problem(f"dynamics.{key}", f"{received_text(given)}, beside {beside}", allowed)
-
-
-def _is_default(sizing: object) -> bool:
-    try:
-        return Sizing.model_validate(sizing) == Sizing()
-    except ValidationError:
-        return False
 
 
 def _diameter_mm(dynamics: Mapping[str, Any], wheel: str) -> float | None:
@@ -142,11 +158,11 @@ def sized(dynamics: Dynamics, gears: GearsSection, uniform: Uniforms) -> Dynamic
     """
     if is_sized(dynamics):
         return dynamics
-    sizing = draw(dynamics.sizing, uniform, AT)
+    sizing = draw(SIZING, uniform, AT)
     found = designed(dynamics, gears, sizing, uniform)
     given = dict(zip(WHEELS, (dynamics.pinion, dynamics.gear), strict=True))
     update: dict[str, Any] = {
-        wheel: _rotor(given[wheel], rotor, dynamics.sizing, constant(sizing.damping_time_s))
+        wheel: _rotor(given[wheel], rotor, constant(sizing.damping_time_s))
         for wheel, rotor in zip(WHEELS, found, strict=True)
     }
     if dynamics.shafts is not None:
@@ -186,7 +202,7 @@ def _given_mm(dynamics: Dynamics, key: str, uniform: Uniforms) -> tuple[float | 
     return first, second
 
 
-def _rotor(given: RotorSection, rotor: RotorNumbers, sizing: Sizing, time_s: float) -> RotorSection:
+def _rotor(given: RotorSection, rotor: RotorNumbers, time_s: float) -> RotorSection:
     """Return the section of a gear on its shaft, filled where it is null."""
     own, bearing = given.bearing, rotor.shaft.bearing
     update: dict[str, Any] = {}
@@ -197,7 +213,7 @@ def _rotor(given: RotorSection, rotor: RotorNumbers, sizing: Sizing, time_s: flo
                 balls=bearing.balls,
                 ball_diameter_mm=bearing.ball_mm,
                 pitch_diameter_mm=bearing.pitch_mm,
-                clearance_um=sizing.clearance_um,
+                clearance_um=SIZING.clearance_um,
             )
     if own.damping_n_s_per_m is None and own.damping_time_s is None:
         update["damping_time_s"] = time_s
@@ -227,7 +243,7 @@ def bearings_of(
     """Return the bearings that a gearbox draws from the catalogue; None of a shaft whose bearings are given."""
     if is_sized(dynamics):
         return None, None
-    found = designed(dynamics, gears, draw(dynamics.sizing, uniform, AT), uniform)
+    found = designed(dynamics, gears, draw(SIZING, uniform, AT), uniform)
     first, second = (
         rotor.shaft.bearing if own.bearing.stiffness_n_per_m is None and own.bearing.geometry is None else None
         for own, rotor in zip((dynamics.pinion, dynamics.gear), found, strict=True)
@@ -249,14 +265,13 @@ def possible_sizes(dynamics: Dynamics, gears: GearsSection) -> Dynamics:
     own = draw(gears, lambda _: MIDDLE, "gears")
     typical = sized(dynamics, own, lambda _: MIDDLE)
     ends = [*corners(lambda uniform: sized(dynamics, own, uniform), *OF_MAKERS)]
-    time = dynamics.sizing.damping_time_s
     update: dict[str, Any] = {}
     for wheel in WHEELS:
         rotor, several = getattr(typical, wheel), [getattr(one, wheel) for one in ends]
         keys = {key: _between(getattr(one, key) for one in several) for key in ("mass_kg", "inertia_kg_m2")}
         bearing = {"stiffness_n_per_m": _between(one.bearing.stiffness_n_per_m for one in several)}
         if getattr(dynamics, wheel).bearing.damping_n_s_per_m is None:
-            bearing["damping_time_s"] = getattr(dynamics, wheel).bearing.damping_time_s or time
+            bearing["damping_time_s"] = getattr(dynamics, wheel).bearing.damping_time_s or SIZING.damping_time_s
         update[wheel] = rotor.model_copy(update={**keys, "bearing": rotor.bearing.model_copy(update=bearing)})
     if typical.shafts is not None:
         shafts = {}

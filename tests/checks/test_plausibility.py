@@ -12,7 +12,6 @@ from siggen.errors import ConfigError
 from tests.config.mill import mill, with_machine
 
 SLIPS = {
-    "modulus in Pa": "gears.youngs_modulus_gpa=206e9",
     "torque in kN m": "operating_points.0.torque_nm=0.04",
     "torque in N mm": "operating_points.0.torque_nm=40000",
     "bearings in N/mm": "dynamics.pinion.bearing.stiffness_n_per_m=2e5",

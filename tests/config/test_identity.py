@@ -110,17 +110,6 @@ def test_a_configuration_cannot_be_changed_and_travels_between_processes():
     assert isinstance(travelled, Config)
 
 
-@pytest.mark.parametrize(
-    ("beam", "named"), [("calibrated", "body"), ("rack_trochoid", "none"), ("base_circle", "none")]
-)
-def test_naming_the_coupling_that_a_beam_brings_along_leaves_the_identity(beam, named):
-    auto = config(stiffness__beam=beam)
-    other = "none" if named == "body" else "body"
-    assert auto.stiffness.coupled_by == named
-    assert config(stiffness__beam=beam, stiffness__coupling=named).identity == auto.identity
-    assert config(stiffness__beam=beam, stiffness__coupling=other).identity != auto.identity
-
-
 def test_a_key_at_its_default_does_not_count_wherever_it_stands():
     class Longer(Config):
         manufacturing: float | None = None

@@ -68,31 +68,6 @@ def test_a_more_severe_state_holds_the_milder_one_whatever_is_drawn(
         assert severe.depth_m >= moderate.depth_m >= slight.depth_m
 
 
-def test_a_drawn_stage_keeps_its_rank_while_the_spall_grows_and_one_is_no_change() -> None:
-    drawn = {"teeth": 3, "stages": [0.2, 0.5]}
-    later = {"teeth": 3, "stages": [0.6, 1.0]}
-    config = config_with({**SPALL, **drawn}, {**SPALL, **later})
-    milder, severe = damage_of(config, 1), damage_of(config, 2)
-    assert len({one.depth_m for one in milder}) == 3
-    for one, two in zip(milder, severe, strict=True):
-        assert holds(two, one)
-    assert config_with({**SPALL, "stages": 1.0}).identity == config_with(SPALL).identity
-
-
-@pytest.mark.parametrize(
-    ("stages", "received"),
-    [
-        ({"each": [1.0, 0.5]}, "one for each of 2"),
-        ({"each": [1, 0.5, 1.2]}, "1.2"),
-        ([1, 0.5, 1], "a list of 3, .*"),
-        (0.0, "0.0"),
-    ],
-)
-def test_stages_that_fit_no_teeth_are_refused(stages: Any, received: str) -> None:
-    with pytest.raises(ConfigError, match=rf"stages[.\da-z]*: received {received}; allowed: "):
-        config_with({**SPALL, "teeth": 3, "stages": stages})
-
-
 def test_teeth_and_gearboxes_have_outlines_of_their_own() -> None:
     config = config_with({**SPALL, "teeth": 2, "face_share": 1.0})
     shapes = {one.outline for specimen in range(3) for one in damage_of(config, 1, specimen)}

@@ -30,18 +30,6 @@ def test_a_spall_has_its_length_on_the_flank_about_the_pitch_point() -> None:
     assert not damage_problems(pair, (spall,))
 
 
-def test_teeth_in_stages_have_the_same_spall_smaller_and_grow_into_the_full_one() -> None:
-    config = config_with({**BOX, "teeth": 3, "stages": {"each": [0.9, 0.5, 0.3]}}, {**BOX, "teeth": 3})
-    slight, severe = damage_of(config, 1), damage_of(config, 2)
-    assert len(slight) == len(severe) == 3  # each full spall has taken in the smaller one
-    for one, full, stage in zip(slight, severe, (0.9, 0.5, 0.3), strict=True):
-        assert one.tooth == full.tooth
-        assert np.ptp(one.outline.face_range_m) == pytest.approx(stage * np.ptp(full.outline.face_range_m), rel=1e-9)
-        assert one.depth_m == pytest.approx(stage * full.depth_m, rel=1e-12)
-        assert full.hides(one)
-    assert config_with({**BOX, "stages": 1.0}).identity == config_with(BOX).identity
-
-
 def test_a_flank_goes_on_below_the_base_circle_along_its_tangent() -> None:
     """The involute leaves the base circle radially, so heights above and below grow by the cosine of its half angle."""
     gear = config_with(BOX).gearbox(0).pair.pinion
@@ -111,13 +99,6 @@ def test_a_more_severe_state_contains_the_region_of_the_milder_one(ladder: list[
         (BOX, {"depth_mm": 4.0}, "depth_mm", "4 mm", "half tooth thickness"),
         (BOX, {"depth_mm": None}, "depth_mm", "null", "above 0"),
         (BOX, {"depth_law": "flat"}, "depth_law", "the text 'flat'", "known keys: gear"),
-        (
-            BOX,
-            {"teeth": 3, "stages": {"each": [1.0, 0.5]}},
-            "stages",
-            "one for each of 2",
-            "one for each of the 3 damaged teeth",
-        ),
         (BOX, {"teeth": [18]}, "teeth", "tooth 18", "0 to 17"),
     ],
     ids=str,

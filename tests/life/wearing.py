@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 
 from siggen.gears.gear_pair import GearPair, SpurGear
-from siggen.keys.drawing import draw
-from siggen.keys.number import MIDDLE
+from siggen.keys.number import MIDDLE, at
 from siggen.life.flank import Flank, flanks
 from siggen.life.law import Wearing
-from siggen.life.pitting import Pitting, PittingCourse
+from siggen.life.pitting import TORQUE_EXPONENT, PittingCourse
 from siggen.seeding import Stream, named_generator
 
 
@@ -28,9 +27,7 @@ PAIR = pair()
 NOMINAL = pair_flanks()
 
 
-def course(
-    unit: int, law: Pitting | None = None, share: float = 0.3, own: tuple[Flank, Flank] = NOMINAL
-) -> PittingCourse:
-    """Return the life of a gearbox; the same unit has the same draws under any law."""
+def course(unit: int, share: float = 0.3, own: tuple[Flank, Flank] = NOMINAL) -> PittingCourse:
+    """Return the life of a gearbox with the middle of the exponents of torque."""
     wearing = Wearing(own, NOMINAL, lambda name: named_generator(7, Stream.LIFE, unit, name=name))
-    return draw(law or Pitting(), lambda _: MIDDLE, "damage").course(wearing, share)
+    return PittingCourse(at(TORQUE_EXPONENT, MIDDLE), wearing, share)

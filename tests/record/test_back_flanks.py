@@ -42,7 +42,6 @@ def own_mirror(friction: str = "off", *, housed: bool = False) -> SetDesign:
         minimal(
             gears__pinion__teeth=25,
             gears__gear={"teeth": 25, "bore_radius_mm": 10.0},
-            stiffness__coupling="body",
             dynamics=dynamics | (HOUSED if housed else {}),
             housing={},
         )

@@ -17,21 +17,28 @@ from siggen.gearbox.specimen import OperatingPoint, Specimen
 from siggen.keys.number import bounds
 from siggen.names import Side
 from siggen.record.structure import structure, supported_stage
+from siggen.rig import sizes
 from siggen.rig.bearings import LEAST_LIFE_H, life_h
 from siggen.rig.rating import rated_torque_nm
 from siggen.rig.rig import Rig, RigDesign
 from siggen.rig.rig_numbers import rig_numbers
 from siggen.rig.shafts import shaft_end_mm
+from siggen.rig.sizes import Sizing
 from tests.config.minimal import minimal
 
 STEEL_KG_M3 = 7850.0
-FIXED = {"torque_factor": 1.5, "shear_n_per_mm2": 20.0, "length_factor": 1.3, "series": 62, "damping_time_s": 1e-5}
+FIXED = {"torque_factor": 1.5, "shear_n_per_mm2": 20.0, "length_factor": 1.3, "series": 62.0, "damping_time_s": 1e-5}
 
 
 def sized(rated_nm: Any = 60.0, dynamics: dict[str, Any] | None = None, **changes: Any) -> SetDesign:
     shafts: dict[str, Any] = {"driver": {}, "driven": {}}
     own = {"model": "casing", "shafts": shafts, "rated_torque_nm": rated_nm, **(dynamics or {})}
     return load_config(minimal(**{"dynamics": own, **changes}))
+
+
+def made(monkeypatch: pytest.MonkeyPatch, **choices: float) -> None:
+    """Let every maker choose the same."""
+    monkeypatch.setattr(sizes, "SIZING", Sizing.model_validate(choices))
 
 
 def stage(gearbox: Specimen) -> GearStage:
@@ -69,10 +76,13 @@ def test_two_small_gearboxes_have_the_shafts_and_bearings_that_were_sized_by_han
         assert sqrt(rotor.bearing_n_per_m / rotor.mass_kg) / (2.0 * pi) == pytest.approx(mode_hz, rel=0.045)
 
 
-def test_rotors_are_steel_discs_on_their_shafts_and_couplings_are_damped_by_a_twentieth() -> None:
+def test_rotors_are_steel_discs_on_their_shafts_and_couplings_are_damped_by_a_twentieth(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """By hand: a disc of the pitch circle around the shaft, and the shaft, longer than the distance of its bearings."""
-    config = sized(dynamics={"sizing": FIXED}).config
-    gearbox = sized(dynamics={"sizing": FIXED}).gearbox(0)
+    made(monkeypatch, **FIXED)
+    design = sized()
+    config, gearbox = design.config, design.gearbox(0)
     assert gearbox.train is not None
     assert gearbox.train.bending is not None
     gears = config.gears
@@ -90,12 +100,12 @@ def test_rotors_are_steel_discs_on_their_shafts_and_couplings_are_damped_by_a_tw
     assert coupling.damping_nm_s_per_rad == pytest.approx(0.05 * critical, rel=0.05)  # of a typical shaft
 
 
-def test_twice_the_torque_is_twice_the_stiffness_of_couplings_and_more_of_bearings_by_a_third_power() -> None:
+def test_twice_the_torque_is_twice_the_stiffness_of_couplings_and_more_of_bearings_by_a_third_power(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """The same balls without clearance, in gears so light beside the load that weight is left out."""
-    thick = {
-        "shafts": {wheel: {"diameter_mm": 30.0} for wheel in ("driver", "driven")},
-        "sizing": {"clearance_um": 0.0},
-    }
+    made(monkeypatch, clearance_um=0.0)
+    thick = {"shafts": {wheel: {"diameter_mm": 30.0} for wheel in ("driver", "driven")}}
     one, two = (
         sized(rated, thick, operating_points=[{"speed_hz": 30.0, "torque_nm": rated}]) for rated in (60.0, 120.0)
     )
@@ -113,19 +123,22 @@ def _principal(bearing: Any) -> np.ndarray:
     return np.linalg.eigvalsh([[x, xy], [xy, y]])
 
 
-def test_a_lightly_loaded_bearing_with_clearance_is_much_softer_and_one_with_preload_is_not() -> None:
-    loose, tight = (sized(dynamics={"sizing": {**FIXED, "clearance_um": play}}).gearbox(0) for play in (15.0, -5.0))
-    softer = [
-        _principal(supported_stage(one.under(OperatingPoint(30.0, 1.0))).pinion.bearing)
-        / _principal(supported_stage(one.under(OperatingPoint(30.0, 60.0))).pinion.bearing)
-        for one in (loose, tight)
-    ]
+def test_a_lightly_loaded_bearing_with_clearance_is_much_softer_and_one_with_preload_is_not(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    softer = []
+    for play in (15.0, -5.0):
+        made(monkeypatch, **FIXED, clearance_um=play)
+        one = sized().gearbox(0)
+        light, heavy = (supported_stage(one.under(OperatingPoint(30.0, torque))).pinion for torque in (1.0, 60.0))
+        softer.append(_principal(light.bearing) / _principal(heavy.bearing))
     assert max(softer[0]) < (1 / 60) ** (1 / 3)  # beyond the law of Hertz: the zone of load narrows too
     assert min(softer[1]) > 0.5
 
 
-def test_damping_follows_the_stiffness_of_the_bearing_at_every_load() -> None:
-    gearbox = sized(dynamics={"sizing": FIXED}).gearbox(0)
+def test_damping_follows_the_stiffness_of_the_bearing_at_every_load(monkeypatch: pytest.MonkeyPatch) -> None:
+    made(monkeypatch, **FIXED)
+    gearbox = sized().gearbox(0)
     for torque_nm in (5.0, 60.0):
         bearing = supported_stage(gearbox.under(OperatingPoint(30.0, torque_nm))).gear.bearing
         assert bearing.damping_x_n_s_per_m == pytest.approx(1e-5 * bearing.stiffness_x_n_per_m)
@@ -188,10 +201,11 @@ def test_bearings_are_labels_of_a_gearbox_that_draws_them() -> None:
     assert not [column for column in given.labels if column.name.startswith("bearing")]
 
 
-def test_what_a_file_gives_stays_and_nothing_bends_without_shafts() -> None:
+def test_what_a_file_gives_stays_and_nothing_bends_without_shafts(monkeypatch: pytest.MonkeyPatch) -> None:
+    made(monkeypatch, **FIXED)
     given = {"mass_kg": 0.5, "bearing": {"stiffness_n_per_m": 3e8}}
-    design = sized(dynamics={"pinion": given, "load_inertia_kg_m2": 7.0, "shafts": None, "sizing": FIXED})
-    gearbox, free = design.gearbox(0), sized(dynamics={"shafts": None, "sizing": FIXED}).gearbox(0)
+    design = sized(dynamics={"pinion": given, "load_inertia_kg_m2": 7.0, "shafts": None})
+    gearbox, free = design.gearbox(0), sized(dynamics={"shafts": None}).gearbox(0)
     assert gearbox.train is not None
     assert gearbox.train.bending is None
     assert (stage(gearbox).pinion.mass_kg, stage(gearbox).load_inertia_kg_m2) == (0.5, 7.0)
@@ -201,11 +215,10 @@ def test_what_a_file_gives_stays_and_nothing_bends_without_shafts() -> None:
     assert [side for side, _ in gearbox.train.balls] == [Side.DRIVEN]
 
 
-def test_a_given_span_is_kept_and_its_shaft_weighs_as_much() -> None:
+def test_a_given_span_is_kept_and_its_shaft_weighs_as_much(monkeypatch: pytest.MonkeyPatch) -> None:
+    made(monkeypatch, **FIXED)
     longer = {"driver": {"bearing_span_mm": [150, 160]}, "driven": {}}
-    one, two = (
-        sized(dynamics={"shafts": s, "sizing": FIXED}).gearbox(3) for s in ({"driver": {}, "driven": {}}, longer)
-    )
+    one, two = sized().gearbox(3), sized(dynamics={"shafts": longer}).gearbox(3)
     assert one.train is not None
     assert two.train is not None
     assert one.train.bending is not None
@@ -259,13 +272,9 @@ def test_it_takes_the_place_of_the_sizes_of_a_file_that_is_extended(tmp_path: Pa
         ("dynamics.rated_speed_hz", None, {
             "planetary": {"ring_teeth": 77}, "dynamics": {"rated_speed_hz": 30.0}
         }, "30.0, beside planetary", "gears alone"),
-        ("dynamics.sizing", None, {
-            "planetary": {"ring_teeth": 77}, "dynamics": {"sizing": {"clearance_um": 3.0}}
-        }, "a mapping with clearance_um, beside planetary", "gears alone"),
         ("dynamics.gear.bearing.damping_time_s", None, {
             "dynamics": {"gear": {"bearing": {"damping_time_s": 1e-5, "damping_n_s_per_m": 900.0}}}
         }, "1e-05, beside damping_n_s_per_m 900.0", "one of both"),
-        ("dynamics.sizing.series", 60.0, {"dynamics": {"sizing": {"series": 61}}}, "61", "60, 62, 63"),
         ("dynamics.shafts.driver.diameter_mm", None, {
             "dynamics": {"shafts": {"driver": {"diameter_mm": None}}}
         }, "null", "beside dynamics.rated_torque_nm"),
@@ -309,5 +318,5 @@ def test_a_state_changes_the_bearing_that_was_drawn_but_not_how_the_gearbox_was_
     assert after - before == pytest.approx(20e-6)
     assert stage(loose).pinion.mass_kg == stage(gearbox).pinion.mass_kg
     assert loose.labels == gearbox.labels  # a label of the gearbox does not tell the state
-    with pytest.raises(ConfigError, match=r"dynamics\.sizing\.clearance_um"):
-        sized(states=states("dynamics.sizing.clearance_um"))
+    with pytest.raises(ConfigError, match=r"dynamics\.rated_torque_nm"):
+        sized(states=states("dynamics.rated_torque_nm"))

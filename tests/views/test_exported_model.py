@@ -233,9 +233,9 @@ def test_the_model_starts_where_its_record_does() -> None:
             assert np.abs(own - found).max() < 1e-6 * np.ptp(own)
 
 
-@pytest.mark.parametrize("coupling", [pytest.param("none", marks=pytest.mark.slow), "body"])
-def test_scipy_gives_the_motion_with_damping_by_asperity_share(coupling: str) -> None:
-    model, own = beginning("tests/configs/casing.yaml", 12, 300, 32, f"stiffness.coupling={coupling}")
+@pytest.mark.parametrize("beam", [pytest.param("rack_trochoid", marks=pytest.mark.slow), "calibrated"])
+def test_scipy_gives_the_motion_with_damping_by_asperity_share(beam: str) -> None:
+    model, own = beginning("tests/configs/casing.yaml", 12, 300, 32, f"stiffness.beam={beam}")
     assert {"mesh.0.law.contact.touch_m", "mesh.0.law.damping_film_root_kg"} <= set(model)
     assert largest(own, by_scipy(model, own, FINE)) < 1e-3
 
@@ -246,7 +246,7 @@ def test_scipy_gives_the_motion_with_damping_by_asperity_share(coupling: str) ->
         ("configs/paper_a.yaml", 0, []),
         ("tests/configs/linear_pits.yaml", 0, []),
         ("configs/paper_b.yaml", 0, []),
-        ("tests/configs/casing.yaml", 16, ["dynamics.mesh.damping=constant", "stiffness.coupling=body"]),
+        ("tests/configs/casing.yaml", 16, ["dynamics.mesh.damping=constant", "stiffness.beam=calibrated"]),
         ("configs/bench.yaml", 5, []),
     ],
 )
