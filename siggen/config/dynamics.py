@@ -221,16 +221,17 @@ class BearingSection(Section):
         return [*found, "damping_n_s_per_m"] if self.damping_n_s_per_m is self.damping_time_s is None else found
 
 
+OF_ROTOR = (
+    "null: a solid steel disc of the pitch circle with its bore, turning about its shaft; with rated_torque_nm, its "
+    "shaft too"
+)
+
+
 class RotorSection(Section):
     """Mass of a gear, what makes it wobble, and the bearings of its shaft (x along the centre line, y vertical)."""
 
-    mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
-        default=None,
-        description="null: a steel disc of the pitch circle with its bore; with rated_torque_nm, its shaft too",
-    )
-    inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(
-        default=None, description="about the shaft; null: of the same disc"
-    )
+    mass_kg: Annotated[Number | None, Within(above=0, words=(None,))] = Field(default=None, description=OF_ROTOR)
+    inertia_kg_m2: Annotated[Number | None, Within(above=0, words=(None,))] = Field(default=None, description=OF_ROTOR)
     eccentricity_um: Annotated[Number, Within(least=0, most=200), Usual(0.5, 200)] = Field(
         default=0.0,
         description="of the gear's axis from its shaft's, added to what its accuracy class allows; needs manufacture",

@@ -23,6 +23,8 @@ SEED = 0
 ATTEMPTS = 100
 """Draws of one pair until it is none of those before; ranges that give fewer pairs are refused."""
 
+TEETH = "number of teeth; of a pair [pinion, gear]"
+SHIFT = "profile shift in modules, positive away from the centre; of a pair [pinion, gear]"
 Teeth = Annotated[Whole, Field(ge=5, le=1000)]
 Shift = Annotated[Real, Field(ge=-1, le=1.5)]
 
@@ -31,12 +33,12 @@ class PairSection(Section):
     """One pair: what a drawing of it begins with. All else is carried over from the pair of the section `gears`."""
 
     teeth: Annotated[tuple[Teeth, Teeth], AllowedText("two whole numbers from 5 to 1000, [pinion, gear]")] = Field(
-        description="[pinion, gear]"
+        description=TEETH
     )
     module_mm: Annotated[Real, Field(gt=0)] = Field(description="normal module")
     face_width_mm: Annotated[Real, Field(gt=0)] = Field(description="width of the teeth in contact")
     profile_shifts: Annotated[tuple[Shift, Shift], AllowedText("two numbers from -1 to 1.5, [pinion, gear]")] = Field(
-        default=(0.0, 0.0), description="[pinion, gear], in modules"
+        default=(0.0, 0.0), description=SHIFT
     )
 
     def __str__(self) -> str:
@@ -123,10 +125,8 @@ Pairs = Annotated[
 class Wheel(Section):
     """One of the two gears."""
 
-    teeth: Annotated[Whole, Field(ge=5, le=1000)] = Field(description="number of teeth")
-    profile_shift: Annotated[Number, Within(least=-1, most=1.5)] = Field(
-        default=0.0, description="in modules, positive away from the centre"
-    )
+    teeth: Annotated[Whole, Field(ge=5, le=1000)] = Field(description=TEETH)
+    profile_shift: Annotated[Number, Within(least=-1, most=1.5)] = Field(default=0.0, description=SHIFT)
     bore_radius_mm: Annotated[Number, Within(least=0.01, most=10_000)] = Field(
         description="radius of the bore, of the shaft"
     )

@@ -73,11 +73,14 @@ class MachineGear(NamedPart, Wheel):
     shaft: str = Field(description="name of the shaft that it stands on")
 
 
+OF_MESH = "name of the gear that drives, or is driven"
+
+
 class MachineMesh(NamedPart, ToothForm):
     """A gear that drives another one."""
 
-    driver: str = Field(description="name of the driving gear")
-    driven: str = Field(description="name of the driven gear")
+    driver: str = Field(description=OF_MESH)
+    driven: str = Field(description=OF_MESH)
     direction_deg: Direction = Field(
         default=0.0,
         description="of the line of centres against that of the first mesh, as the first shaft turns",

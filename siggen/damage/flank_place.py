@@ -33,7 +33,8 @@ AnyGear: TypeAlias = Annotated[str, Field(pattern=rf"^{PART}(\.{PART})?$"), GEAR
 """`either`: drawn per gearbox, the same for all of its states."""
 
 DAMAGED_GEAR = (
-    "damaged gear: pinion, gear, either (drawn); of a machine NAME or MESH.either; sun, ring, planet (the first)"
+    "damaged gear: pinion, gear, either (drawn, not in lists); of a machine NAME or MESH.either; sun, ring, planet (the "
+    "first)"
 )
 
 HeightReading: TypeAlias = Literal["axial", "radial", "arc"]
@@ -56,7 +57,8 @@ MIDDLE_HEIGHT = (
     "the pitch point"
 )
 FACE_CENTRE = "middle across the face; null: of the face"
-PROFILE_LENGTH = "length along the profile; of irregular spalls the mean"
+LENGTHS = "length across the face, and along the profile; of irregular spalls the mean"
+EDGE_RADIUS = "radius of the edges (default assumed)"
 DEPTH = "normal to the tooth's middle plane; of irregular spalls null: 0.05 of the root of both lengths (assumed)"
 FLOOR = "flat floor, or a dish that is deepest in the middle"
 

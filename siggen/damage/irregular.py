@@ -26,13 +26,14 @@ from siggen.damage.flank_damage import damage_problems, single_problems
 from siggen.damage.flank_place import (
     DAMAGED_GEAR,
     DEPTH,
+    EDGE_RADIUS,
     FACE_CENTRE,
     FLOOR,
+    LENGTHS,
     MIDDLE_HEIGHT,
     MM,
     MODULE,
     PROBE_M,
-    PROFILE_LENGTH,
     READING,
     SKEW,
     AnyGear,
@@ -301,7 +302,7 @@ class IrregularSpalls(Fault):
         description=MIDDLE_HEIGHT,
     )
     height_reading: HeightReading = Field(default="arc", description=READING)
-    profile_length_mm: Length = Field(description=PROFILE_LENGTH)
+    profile_length_mm: Length = Field(description=LENGTHS)
     face_share: Share = Field(description="length across the face over the face width")
     face_centre_mm: PlaceOnFace = Field(default=None, description=FACE_CENTRE)
     skew_mm_per_10mm: Skew = Field(
@@ -312,7 +313,7 @@ class IrregularSpalls(Fault):
         default=0.1, description="rms of each edge's waves over the profile length (default assumed)"
     )
     edge_radius_mm: Annotated[Number, Within(least=0, most=1), Usual(0.002, 1), Grows(MODULE)] = Field(
-        default=Uniform(low=0.02, high=0.2), description="radius of the edges (default assumed)"
+        default=Uniform(low=0.02, high=0.2), description=EDGE_RADIUS
     )
     depth_mm: OptionalLength = Field(
         default=None,
@@ -532,13 +533,13 @@ EdgePoint = Annotated[
 class ListedIrregular(Section):
     """One irregular spall with a flat floor at a given place."""
 
-    gear: AnyGear = Field(default=PINION, description="damaged gear")
+    gear: AnyGear = Field(default=PINION, description=DAMAGED_GEAR)
     tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
     edges_mm: Annotated[tuple[EdgePoint, ...], Field(min_length=2)] = Field(
         description="[place across the face, ascending; heights of lower and upper edge above the base circle]"
     )
-    depth_mm: Annotated[Real, Field(gt=0)] = Field(description="normal to the tooth's middle plane")
-    edge_radius_mm: Annotated[Real, Field(ge=0, le=1)] = Field(description="radius of the edges")
+    depth_mm: Annotated[Real, Field(gt=0)] = Field(description=DEPTH)
+    edge_radius_mm: Annotated[Real, Field(ge=0, le=1)] = Field(description=EDGE_RADIUS)
 
     def spall(self, pair: GearPair, reading: str) -> IrregularSpall:
         """Return the spall on the flank of a drawn gear, its heights as a reading measures them."""

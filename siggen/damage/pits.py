@@ -450,7 +450,7 @@ class ClusteredPits(PitSize, Fault):
 class ListedPit(PitSize):
     """One pit at a given place."""
 
-    gear: AnyGear = Field(default=PINION, description="damaged gear")
+    gear: AnyGear = Field(default=PINION, description=DAMAGED_GEAR)
     tooth: Annotated[Whole, Field(ge=0)] = Field(default=0, description="index of the tooth, from 0")
     height_mm: Height = Field(default="pitch", description=MIDDLE_HEIGHT)
     face_mm: Annotated[Number, Within(least=0), Grows(FACE_WIDTH)] = Field(description=FACE_CENTRE)

@@ -19,10 +19,10 @@ from siggen.damage.flank_place import (
     DEPTH,
     FACE_CENTRE,
     FLOOR,
+    LENGTHS,
     MIDDLE_HEIGHT,
     MM,
     PROBE_M,
-    PROFILE_LENGTH,
     READING,
     AnyGear,
     FloorShape,
@@ -95,8 +95,8 @@ class SpallSize(Section):
     gear: AnyGear = Field(default=PINION, description=DAMAGED_GEAR)
     centre_height_mm: Height = Field(default="pitch", description=MIDDLE_HEIGHT)
     face_centre_mm: PlaceOnFace = Field(default=None, description=FACE_CENTRE)
-    face_length_mm: LengthAcross = Field(description="length across the face")
-    profile_length_mm: Length = Field(description=PROFILE_LENGTH)
+    face_length_mm: LengthAcross = Field(description=LENGTHS)
+    profile_length_mm: Length = Field(description=LENGTHS)
     depth_mm: Length = Field(description=DEPTH)
     floor: FloorShape = Field(default="flat", description=FLOOR)
 

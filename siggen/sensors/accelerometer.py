@@ -22,7 +22,7 @@ from siggen.noise.registry import SourceKeys
 from siggen.sensing.inputs import MOTION, Input
 from siggen.sensing.responses import high_pass_response, resonance_response
 from siggen.sensors.path import DIRECTIONS, PATH, MeasuredPath
-from siggen.sensors.places import IN_MOTION, MODAL, PLATE_OF, Places
+from siggen.sensors.places import IN_MOTION, MODAL, PLACE_TEXT, PLATE_OF, Places
 from siggen.sensors.quantity import ACCELERATION, Quantity
 from siggen.sensors.sensor import SIZE, AxisDraws, SensorBase
 
@@ -60,8 +60,7 @@ class Accelerometer(SourceKeys, SensorBase):
     kind: Literal["accelerometer"] = Field(default="accelerometer", description="acceleration of a place")
     place: Annotated[str, IN_MOTION] = Field(
         default="pinion_bearing",
-        description="lid to foot need housing.kind: plates, casing the kinds rigid, modal or a path, "
-        "NAME_bearing several meshes",
+        description=PLACE_TEXT,
     )
     position_mm: Annotated[tuple[Number, ...] | None, Within(words=(None,), size=2), Grows(SIZE)] = Field(
         default=None,

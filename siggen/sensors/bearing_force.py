@@ -11,7 +11,7 @@ from siggen.errors import Problem
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Real
 from siggen.sensing.inputs import FORCE, Input
-from siggen.sensors.places import AT_BEARINGS, Places
+from siggen.sensors.places import AT_BEARINGS, PLACE_TEXT, Places
 from siggen.sensors.quantity import Quantity
 from siggen.sensors.sensor import AxisDraws, SensorBase
 
@@ -27,7 +27,7 @@ class ForceWasher(SensorBase):
     kind: Literal["bearing_force"] = Field(description="force of a shaft's bearings on the housing")
     place: Annotated[str, AT_BEARINGS] = Field(
         default="pinion_bearing",
-        description="whose bearings; of a machine, SHAFT_bearing",
+        description=PLACE_TEXT,
     )
     axes: Annotated[tuple[Literal["vertical", "horizontal", "axial"], ...], Field(min_length=1)] = Field(
         default=("vertical",), description="what it measures, one channel each"

@@ -11,7 +11,7 @@ from siggen.errors import Problem
 from siggen.keys.number import Number, Within
 from siggen.keys.section import Real
 from siggen.sensing.inputs import SHAFT, Input
-from siggen.sensors.places import Places
+from siggen.sensors.places import PLACE_TEXT, Places
 from siggen.sensors.quantity import Quantity
 from siggen.sensors.sensor import AxisDraws, SensorBase
 
@@ -27,7 +27,7 @@ class TorqueSensor(SensorBase):
     kind: Literal["coupling_torque"] = Field(description="torque that a coupling passes on")
     place: Literal["input_coupling", "output_coupling"] = Field(
         default="input_coupling",
-        description="motor to pinion, or last gear to load",
+        description=PLACE_TEXT,
     )
     axes: Annotated[tuple[Literal["rotation"], ...], Field(min_length=1)] = Field(
         default=("rotation",), description="what it measures, one channel each"

@@ -19,7 +19,7 @@ from siggen.names import PINION
 from siggen.sensing.inputs import SHAFT, Input
 from siggen.sensing.pulses import counted_speed, disc_marks, pulse_times
 from siggen.sensors.converter import BITS_TEXT, Bits
-from siggen.sensors.places import TURNING, Places
+from siggen.sensors.places import PLACE_TEXT, TURNING, Places
 from siggen.sensors.quantity import Quantity
 from siggen.sensors.sensor import AxisDraws, SensorBase
 from siggen.sensors.transducer import Running, Transducer
@@ -45,7 +45,7 @@ class Encoder(SensorBase):
     kind: Literal["encoder"] = Field(description="angular speed of a shaft, from the pulses of a disc")
     place: Annotated[str, TURNING] = Field(
         default=PINION,
-        description="what it turns with, a gear of any mesh",
+        description=PLACE_TEXT,
     )
     axes: Annotated[tuple[Literal["rotation"], ...], Field(min_length=1)] = Field(
         default=("rotation",), description="what it measures, one channel each"

@@ -18,6 +18,12 @@ PLATES = "casing, housing.kind: plates"
 """The model whose housing gives way."""
 MODAL = "casing, housing.kind: modal"
 """The model whose housing gives way as given modes say."""
+PLACE_TEXT = (
+    "accelerometer: lid to foot need housing.kind: plates, casing the kinds rigid, modal or a path, NAME_bearing "
+    "several meshes; encoder: what it turns with, a gear of any mesh; torque: motor to pinion, "
+    "or last gear to load; force: whose bearings, of a machine SHAFT_bearing"
+)
+"""Meaning of the key `place` of every kind of sensor."""
 PLATE_OF = {"lid": "lid", "wall": "front", "pinion_end": "pinion_end", "gear_end": "gear_end", "foot": "floor"}
 """Place -> plate of the housing."""
 ON_CASING = {"casing": ("casing",), PLATES: tuple(PLATE_OF), MODAL: ("casing", *PLATE_OF)}
