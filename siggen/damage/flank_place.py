@@ -33,8 +33,8 @@ AnyGear: TypeAlias = Annotated[str, Field(pattern=rf"^{PART}(\.{PART})?$"), GEAR
 """`either`: drawn per gearbox, the same for all of its states."""
 
 DAMAGED_GEAR = (
-    "damaged gear: pinion, gear, either (drawn, not in lists); of a machine NAME or MESH.either; sun, ring, planet (the "
-    "first)"
+    "damaged gear: pinion, gear, either (drawn, not in lists); of a machine NAME or MESH.either; sun, ring, "
+    "planet (the first)"
 )
 
 HeightReading: TypeAlias = Literal["axial", "radial", "arc"]
