@@ -90,7 +90,6 @@ from diagnostics.training.referenced import log_values
 from diagnostics.training.splits import SpecimenSplit
 from siggen.errors import DatasetError, UsageError
 from siggen.file_writing import write_file
-from siggen.life.pitting import TORQUE_EXPONENT
 from siggen.plain_json import json_text
 
 CHUNK = 400
@@ -447,6 +446,10 @@ def life_predictions(benchmark: Benchmark, seed: int, workers: int) -> Iterator[
         yield pa.table({CLASSIFIER: [name] * len(record), RECORD: record, **dict(zip(COLUMNS, hours.T, strict=True))})
 
 
+TORQUE_EXPONENT = 6.55
+"""With which lives fall with the torque: gearboxes draw theirs (`siggen.life.pitting`), this is the middle."""
+
+
 def pace(config: Mapping[str, Any], changes: Mapping[str, Any]) -> float:
     """Return how many hours of a configuration of lives wear as much as one with some changes; speeds are alike.
 
@@ -456,8 +459,7 @@ def pace(config: Mapping[str, Any], changes: Mapping[str, Any]) -> float:
     histories = [load or [[1.0, 1.0]] for load in ({**life, **changes.get("life", {})}["history"], life["history"])]
     if any(len(block) > 2 for load in histories for block in load):
         return 1.0
-    exponent = TORQUE_EXPONENT.at(0.5)  # gearboxes draw theirs: the middle
-    wear, usual = (sum(h * ratio**exponent for h, ratio in load) / sum(h for h, _ in load) for load in histories)
+    wear, usual = (sum(h * ratio**TORQUE_EXPONENT for h, ratio in load) / sum(h for h, _ in load) for load in histories)
     return float(wear / usual)
 
 

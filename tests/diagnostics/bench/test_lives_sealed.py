@@ -21,6 +21,7 @@ from diagnostics.bench.question import LIFE_CONDITIONS
 from diagnostics.scoring.benchmark import open_benchmark
 from diagnostics.training.lives import AGE, DEBRIS
 from siggen.dataset.reading import Dataset
+from siggen.life.pitting import TORQUE_EXPONENT
 from tests.command import Ended, command
 from tests.diagnostics.bench.attackers import SIGNAL, attackers
 from tests.diagnostics.bench.conftest import SECRET, Made
@@ -138,7 +139,7 @@ def test_a_model_of_ones_own_takes_age_and_indicators_from_the_public_table(made
 @pytest.mark.parametrize(
     ("history", "expected"),
     [
-        ([], 1.05**6.55),
+        ([], 1.05 ** TORQUE_EXPONENT.at(0.5)),
         ([[2.0, 1.05], [1.0, 0.0]], 1.5),
         ([[1.0, 60.0, 30.0]], 1.0),
     ],
