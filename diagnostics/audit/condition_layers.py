@@ -16,8 +16,9 @@ channels, lags, and the layers of raw records.
   channel alike. Damage of a few teeth changes their size, and their phase only a little: the lag of the averaged
   waveform moves by up to a quarter of a sample in severe states. So lags count in whole samples between channels, and
   in steps of two against the tacho. Estimated by the largest sum of the mesh lines' cross spectrum over trial lags. How
-  near that sum comes to one of lines that are only delayed counts in quarters: a record that runs backwards has no such
-  lag. Source: generalised cross-correlation, standard literature; the steps measured.
+  near that sum comes to one of lines that are only delayed is the likeness: a record that runs backwards has no such
+  lag. Large damage lowers it too, so it is asked with the levels, of the smallest damage.
+  Source: generalised cross-correlation, standard literature; the steps measured.
 
 Source of all else: derived.
 """
@@ -255,7 +256,6 @@ HARMONICS, LARGEST_LAG, TRIALS_PER_SAMPLE = 20, 16, 8
 TACHO_STEP = 2.0
 """Step of the lag to the tacho that counts, in samples; between channels it is one sample."""
 
-LIKENESS_STEP = 0.25
 FINE = 0.1
 """Samples around the largest sum at which a parabola is laid through it."""
 
@@ -313,13 +313,11 @@ def channel_lags(measured: MeasuredSet, reference: np.ndarray) -> tuple[np.ndarr
 
 
 def lag_columns(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.ndarray]:
-    """Return lags and likeness in steps that count, by name, (records,) each."""
-    lags, likeness = channel_lags(measured, reference)
+    """Return lags in steps that count, by name, (records,) each."""
+    lags, _ = channel_lags(measured, reference)
     channels = measured.channels
     columns = {"lag to the tacho": TACHO_STEP * np.round(np.median(lags, axis=1) / TACHO_STEP)}
     for first in range(len(channels)):
-        name = f"likeness of {channels[first]} to its own healthy record"
-        columns[name] = LIKENESS_STEP * np.round(likeness[:, first] / LIKENESS_STEP)
         for second in range(first + 1, len(channels)):
             apart = np.round(lags[:, first] - lags[:, second])
             columns[f"lag of {channels[first]} to {channels[second]}"] = apart
@@ -327,14 +325,14 @@ def lag_columns(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.nd
 
 
 def fine_lags(measured: MeasuredSet, reference: np.ndarray) -> dict[str, np.ndarray]:
-    """Return lags to the tacho and to the first channel without steps, by name, (records,) each [samples]."""
-    lags, _ = channel_lags(measured, reference)
+    """Return likeness and lags without steps [samples], to tacho and first channel, by name, (records,) each."""
+    lags, likeness = channel_lags(measured, reference)
     columns = {"lag to the tacho": np.median(lags, axis=1)}
-    return columns | {
-        f"lag of {channel} to {measured.channels[0]}": lags[:, k] - lags[:, 0]
-        for k, channel in enumerate(measured.channels)
-        if k
-    }
+    for k, channel in enumerate(measured.channels):
+        columns[f"likeness of {channel} to its own healthy record"] = likeness[:, k]
+        if k:
+            columns[f"lag of {channel} to {measured.channels[0]}"] = lags[:, k] - lags[:, 0]
+    return columns
 
 
 METADATA, TEXTS, BYTE, ORDER, NOISE, CHANNELS = "metadata", "texts", "bytes", "order", "noise", "channels"

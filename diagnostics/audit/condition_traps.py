@@ -233,7 +233,7 @@ MENDS = {
     ENDS: "Draw noise per gearbox by one law for all states, and filter all states alike.",
     CLOCK: "Record the tacho with the channels, by one clock, in all states.",
     TEMPLATES: "Add nothing to records that stands at the same time in several of them.",
-    LEVELS: "Record all states of a gearbox at one gain, by one chain; damage may not change what its size does not.",
+    LEVELS: "Record all states at one gain and sign, by one chain; damage may not change what its size does not.",
 }
 """How each layer is mended."""
 
