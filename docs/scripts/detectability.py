@@ -1,9 +1,9 @@
 """Figure and tables of presets.md: `python docs/scripts/detectability.py [GEARBOXES] [WORKERS] [SET ...]`.
 
-Makes three sets in runs/ where they are missing, has `siggen-diagnostics audit` attack each of them, and prints
-Markdown: the strongest detector by state, alone and beside the gearbox's own healthy record; what the older probe of
-four indicators would have claimed; and how healthy records lie in measured ranges. 24 gearboxes take some 25 minutes
-on two cores. SET is one of bench, parallel, industrial, families, edges, quickstart; without any: bench, parallel,
+Makes three sets in runs/ where they are missing, has `siggen-diagnostics audit` look at each of them, and prints
+Markdown: the strongest detector by state, without and with the gearbox's own healthy record; what four common
+indicators find; and how healthy records lie in measured ranges. 24 gearboxes take some 25 minutes on two cores.
+SET is one of bench, parallel, industrial, families, edges, quickstart; without any: bench, parallel,
 edges.
 
 * `detect_bench`, `detect_industrial`: presets bench and industrial with the states of STATES; `detect_parallel`: bench
@@ -64,9 +64,9 @@ ALONE, WITH_REFERENCE = "strongest detector alone", "strongest detector with a h
 UNPAIRED = "logistic regression on four indicators"
 """Names in audit.json."""
 SEEN = {
-    WITH_REFERENCE: ("strongest detector, with a healthy reference", "#1b7837", "o"),
-    ALONE: ("strongest detector, alone", "#2166ac", "s"),
-    UNPAIRED: ("older probe: four indicators, alone", "#b2182b", "^"),
+    WITH_REFERENCE: ("strongest detector, with reference", "#1b7837", "o"),
+    ALONE: ("strongest detector, without reference", "#2166ac", "s"),
+    UNPAIRED: ("four indicators, without reference", "#b2182b", "^"),
 }
 Entry = dict[str, Any]
 
@@ -163,8 +163,8 @@ def title(state: str) -> str:
 
 def ladder_table(found: dict[str, dict[str, Entry]]) -> list[str]:
     """Return the Markdown rows of a preset."""
-    head = "| damage | area [mm²] | older probe, alone | strongest, alone | by |"
-    rows = [f"{head} strongest, with a healthy reference | by |", "|---|---|---|---|---|---|---|"]
+    head = "| damage | area [mm²] | four indicators, without reference | strongest, without reference | by |"
+    rows = [f"{head} strongest, with reference | by |", "|---|---|---|---|---|---|---|"]
     for state in (state for state in (*STATES, "through") if state in found[ALONE]):
         weak, alone, referenced = (found[way][state] for way in (UNPAIRED, ALONE, WITH_REFERENCE))
         cells = (auc(alone), detector(alone), auc(referenced), detector(referenced))
@@ -174,8 +174,8 @@ def ladder_table(found: dict[str, dict[str, Entry]]) -> list[str]:
 
 def edge_table(found: dict[str, dict[str, Entry]]) -> list[str]:
     """Return the Markdown rows of spalls of 1 mm by share and skew."""
-    head = "| share of the face | skew over the face | area [mm²] | older probe, alone | strongest, alone |"
-    rows = [f"{head} strongest, with a healthy reference |", "|---|---|---|---|---|---|"]
+    head = "| share of the face | skew over the face | area [mm²] | four indicators | strongest, without reference |"
+    rows = [f"{head} strongest, with reference |", "|---|---|---|---|---|---|"]
     for state, alone in sorted(found[ALONE].items()):
         _, share, _, skew = state.split("_")
         cells = (auc(found[way][state]) for way in (UNPAIRED, ALONE, WITH_REFERENCE))
