@@ -118,7 +118,7 @@ class JudgedDetector:
     picks : tuple of (str, int)
         Which detectors it stands for, and in how many folds; empty for one that is always the same.
     sham : Interval, optional
-        AUC of the records of shams against other healthy ones, where there are any: above chance it tells a leak.
+        AUC of the records of shams against other healthy ones, if any: a lower limit above 0.5 tells a leak.
     share : Interval, optional
         Share of all damaged records with an alarm.
     """

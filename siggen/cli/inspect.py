@@ -107,7 +107,7 @@ def inspect(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", help="Table to write, .csv or .parquet; of life the YAML file."),
+        typer.Option("--out", help="Table to write, .csv or .parquet; of housing .csv, of life the YAML file."),
     ] = None,
     picture: PictureOptions,
     as_json: AsJson = False,

@@ -23,8 +23,8 @@ SEED = 0
 ATTEMPTS = 100
 """Draws of one pair until it is none of those before; ranges that give fewer pairs are refused."""
 
-TEETH = "number of teeth; of a pair [pinion, gear]"
-SHIFT = "profile shift in modules, positive away from the centre; of a pair [pinion, gear]"
+TEETH = "number of teeth; in `pairs` of both gears"
+SHIFT = "profile shift in modules, positive away from the centre; in `pairs` of both gears"
 Teeth = Annotated[Whole, Field(ge=5, le=1000)]
 Shift = Annotated[Real, Field(ge=-1, le=1.5)]
 

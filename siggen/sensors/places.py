@@ -20,7 +20,7 @@ MODAL = "casing, housing.kind: modal"
 """The model whose housing gives way as given modes say."""
 PLACE_TEXT = (
     "accelerometer: lid to foot need housing.kind: plates, casing the kinds rigid, modal or a path, NAME_bearing "
-    "several meshes; encoder: what it turns with, a gear of any mesh; torque: motor to pinion, "
+    "several meshes; encoder: what it turns with, a gear of any mesh; torque: motor to first gear, "
     "or last gear to load; force: whose bearings, of a machine SHAFT_bearing"
 )
 """Meaning of the key `place` of every kind of sensor."""
