@@ -90,7 +90,7 @@ def shown_ladders(audit: Audit) -> dict[str, list[Detectability]]:
     return {name: entries for name, entries in found.items() if entries}
 
 
-def attack_parts(audit: Audit) -> list[Block]:
+def detector_parts(audit: Audit) -> list[Block]:
     """Return the tables of the detectors; nothing where none could judge."""
     if not audit.states:
         return []
@@ -311,7 +311,7 @@ def audit_page(audit: Audit, dataset: Dataset, drawn: dict[str, bytes]) -> Page:
     if audit.reference:
         parts += [Heading("Against your recordings"), *reference_parts(audit.reference)]
     parts.append(Heading("Detectability"))
-    parts += attack_parts(audit)
+    parts += detector_parts(audit)
     if audit.best:
         parts += [Paragraph(SAID.how_single()), _best_table(audit)]
     parts += [part for name, found in shown_ladders(audit).items() for part in _detection_parts(name, found, audit)]

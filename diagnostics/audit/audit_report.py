@@ -183,8 +183,8 @@ def audit_set(
     with stage("detectability", 1):
         found = _detections(measured, seed)
         best = best_indicators(measured.matrix(), seed)
-    attacked, chance, shams = _attacks(measured, seed, stage)
-    found |= attacked
+    detected, chance, shams = _bank_on_signals(measured, seed, stage)
+    found |= detected
     findings += sham_traps(shams)
     compared = None if names_of(dataset)[0].planetary else realism(measured)
     beside = None
@@ -226,13 +226,13 @@ def _detections(measured: MeasuredSet, seed: int) -> dict[str, list[Detectabilit
     }
 
 
-def _attacks(
+def _bank_on_signals(
     measured: MeasuredSet, seed: int, stage: Stage
 ) -> tuple[dict[str, list[Detectability]], ChanceLimit, tuple[ShamFound, ...]]:
     """Return what the bank of detectors on waveforms reaches, by chance too, and on shams."""
     with stage("preparing detectors", PREPARED) as advance:
         bank = signal_detectors(measured, seed, advance)
-    with stage("attacking", len(bank)) as advance:
+    with stage("detecting", len(bank)) as advance:
         found = bank_detections(measured, bank, seed, advance)
     with stage("permuted states", len(damaged_states(measured))) as advance:
         chance = chance_limit(measured, bank, seed, advance)

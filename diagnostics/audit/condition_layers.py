@@ -78,7 +78,7 @@ def repeated_values(name: str, values: np.ndarray, specimen: np.ndarray) -> dict
 def pair_columns(columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Return which records have each pair of values of two columns (records,) that have few; flags that vary.
 
-    Columns that are constant are left out, and more than MOST_PAIRED columns are not paired.
+    Constant columns are left out. The first MOST_PAIRED of the others are paired, since pairs grow with their square.
     """
     few = {name: values for name, values in columns.items() if 1 < len(set(values.tolist())) <= MOST_VALUES}
     flags = {}
@@ -449,16 +449,16 @@ def _metadata(measured: MeasuredSet) -> dict[str, np.ndarray]:
         if values.ndim == 1 and values.dtype.kind in "biuf" and must_not_tell(measured.roles, name)
     }
     pulses = {name: measured.values[name][:, 0] for name in (*PULSES, "samples") if name in measured.values}
-    return numbers | pulses | _beside_labels(measured.labels, pulses)
+    return numbers | pulses | _beside_labels(measured, pulses)
 
 
-def _beside_labels(labels: dict[str, np.ndarray], pulses: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _beside_labels(measured: MeasuredSet, pulses: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Return what the pulses give less what labels say, where a set has both."""
-    distances = {}
+    labels, distances = measured.labels, {}
     if "speed_hz" in labels and "pulses_per_s" in pulses:
         distances["speed of the pulses over its label"] = pulses["pulses_per_s"] / labels["speed_hz"] - 1.0
-    if "pinion_shaft_hz" in labels and "pulses_per_s" in pulses:
-        off = np.abs(pulses["pulses_per_s"] / labels["pinion_shaft_hz"] - 1.0)
+    if (shaft_hz := measured.pulsed_shaft_hz) is not None and "pulses_per_s" in pulses:
+        off = np.abs(pulses["pulses_per_s"] / shaft_hz - 1.0)
         distances["distance of the pulses from the shaft's frequency"] = off
     if "start_angle_rad" in labels and "start_turn" in pulses:
         apart = pulses["start_turn"] - labels["start_angle_rad"] / (2.0 * np.pi)

@@ -170,7 +170,7 @@ class MeasuredSet:
     gears : GearNames
         What indicators are called after.
     about : mapping of str to mapping
-        Label columns by what they hold (`teeth`, `faulty_teeth`) and of which gear.
+        Label columns by what they hold (`teeth`, `faulty_teeth`, `shaft_hz`) and of which gear or shaft.
     """
 
     labels: dict[str, np.ndarray]
@@ -192,6 +192,11 @@ class MeasuredSet:
     def first(self, quantity: str) -> np.ndarray | None:
         """Return what labels hold of the first driver, (records,): its `teeth`, `faulty_teeth`; None where unknown."""
         return self.labels.get(self.about.get(quantity, {}).get(self.gears[0].gears[0], ""))
+
+    @property
+    def pulsed_shaft_hz(self) -> np.ndarray | None:
+        """What labels say of the speed of the first shaft, which has the tacho, (records,) [Hz]; None where unknown."""
+        return self.labels.get(next(iter(self.about.get("shaft_hz", {}).values()), ""))
 
     @property
     def teeth(self) -> np.ndarray:
@@ -286,7 +291,7 @@ def measured_set(
         sections=_of_labels(dataset, dataset.section),
         raw=raw_columns(recordings(dataset)),
         gears=names_of(dataset),
-        about={quantity: dataset.columns_of(quantity) for quantity in ("teeth", "faulty_teeth")},
+        about={quantity: dataset.columns_of(quantity) for quantity in ("teeth", "faulty_teeth", "shaft_hz")},
     )
 
 

@@ -258,6 +258,8 @@ def load_gearbox_network(path: Path) -> tuple[GearboxNetwork, dict[str, Any]]:
         limits = Limits(*(arrays.pop(f"limits.{one.name}") for one in fields(Limits)))
         widening = arrays.pop("size_widening")
         held, wanted = {name: array.shape for name, array in arrays.items()}, shapes(len(kinds), widths)
+        held |= {one.name: getattr(limits, one.name).shape for one in fields(Limits)} | {"widening": widening.shape}
+        wanted |= {one.name: getattr(Limits.unset(), one.name).shape for one in fields(Limits)} | {"widening": (2,)}
         if held != wanted:
             names = sorted(name for name in held | wanted if held.get(name) != wanted.get(name))
             raise ValueError(f"shape of {names[0]}")

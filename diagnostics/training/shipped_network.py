@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnostics.indicators.classifier_table import with_kinds
 from diagnostics.indicators.matrix import FeatureMatrix
 from diagnostics.indicators.workers import mapped
 from diagnostics.records.gear_train import meshes_of
@@ -114,5 +115,5 @@ def pretrained_features(dataset: Dataset, *, beside: bool = False, classes: str 
     values = heads(lines, lines, references) if beside else heads(lines)
     kinds = (f"{kind}_log_odds" for kind in shipped_network()[0].kinds)
     names = (DAMAGE, *kinds, f"{GEARS[0]}_log_odds", "log_damaged_share")
-    matrix = FeatureMatrix(values, names, labels)
+    matrix = with_kinds(FeatureMatrix(values, names, labels), dataset)
     return matrix.rows(np.array([known.size > 0 for known in references])) if beside else matrix

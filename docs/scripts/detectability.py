@@ -165,8 +165,9 @@ def ladder_table(found: dict[str, dict[str, Entry]]) -> list[str]:
     """Return the Markdown rows of a preset."""
     head = "| damage | area [mm²] | four indicators, without reference | strongest, without reference | by |"
     rows = [f"{head} strongest, with reference | by |", "|---|---|---|---|---|---|---|"]
-    for state in (state for state in (*STATES, "through") if state in found[ALONE]):
-        weak, alone, referenced = (found[way][state] for way in (UNPAIRED, ALONE, WITH_REFERENCE))
+    ways = (UNPAIRED, ALONE, WITH_REFERENCE)
+    for state in (state for state in (*STATES, "through") if all(state in found[way] for way in ways)):
+        weak, alone, referenced = (found[way][state] for way in ways)
         cells = (auc(alone), detector(alone), auc(referenced), detector(referenced))
         rows.append(f"| {title(state)} | {alone['damaged_area_mm2']:.1f} | {auc(weak)} | {' | '.join(cells)} |")
     return rows

@@ -10,7 +10,7 @@ from typing import Any
 from siggen.errors import UsageError
 
 AUDIT = "audit.json"
-TOO_FEW = "What attackers reached is not quoted: there are too few gearboxes to tell it from chance.\n"
+TOO_FEW = "What detectors reached is not quoted: there are too few gearboxes to tell it from chance.\n"
 UNAUDITED = """## Audit
 
 Nobody has looked for what makes this set trivially separable: no audit was found when it was published. Do not take a
@@ -32,13 +32,13 @@ def audit_section(identity: str, file: Path | None) -> str:
         found: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
         of, best = found["identity"], found["best_single_indicator"]
         sentences = _sentences(found["verdict"], found["summary"])
-        attackers = _strongest(found["strongest"]) if "strongest" in found else _attackers(best)
-        attackers = TOO_FEW if found.get("too_few_gearboxes") else attackers
+        detectors = _strongest(found["strongest"]) if "strongest" in found else _detectors(best)
+        detectors = TOO_FEW if found.get("too_few_gearboxes") else detectors
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise UsageError(f"{file}: is no {AUDIT} of siggen-diagnostics ({error!r}); run the audit again") from error
     if of != identity:
         raise UsageError(f"{file}: is the audit of another set (identity {str(of)[:12]} instead of {identity[:12]})")
-    return f"## Audit\n\n{sentences}\n\n{attackers}"
+    return f"## Audit\n\n{sentences}\n\n{detectors}"
 
 
 def _sentences(verdict: object, summary: object) -> str:
@@ -49,18 +49,18 @@ def _sentences(verdict: object, summary: object) -> str:
 
 
 def _strongest(sides: Mapping[str, Mapping[str, Any]]) -> str:
-    """Return a table of what the strongest attacker reached in each state, alone and with a healthy reference."""
+    """Return a table of what the strongest detector reached in each state, alone and with a healthy reference."""
     lines = [
         f"| {side} | {entry['state']} | {entry['chosen']} | {_number(entry['auc']['value'])} | {entry['tried']} |"
         for side, entries in sides.items()
         for entry in entries["states"]
     ]
     head = "A classifier that scores no better has learnt no more than this:\n"
-    table = ["| attacker | state | what it chose most often | AUC against healthy | tried |", "|---|---|---|---|---|"]
+    table = ["| detector | state | what it chose most often | AUC against healthy | tried |", "|---|---|---|---|---|"]
     return "\n".join([head, *table, *lines, ""]) if lines else "No state could be judged.\n"
 
 
-def _attackers(best: Mapping[str, Mapping[str, Any]]) -> str:
+def _detectors(best: Mapping[str, Mapping[str, Any]]) -> str:
     """Return a table of the single indicator that separates each state best, the strongest first."""
     if not best:
         return "No state could be judged by single indicators.\n"
@@ -70,7 +70,7 @@ def _attackers(best: Mapping[str, Mapping[str, Any]]) -> str:
         for state, entry in rows
     ]
     head = (
-        "The strongest attacker of each state is the single indicator that separates it best from healthy. A "
+        "The strongest detector of each state is the single indicator that separates it best from healthy. A "
         "classifier that scores no better has learnt no more than this number:\n"
     )
     table = ["| state | indicator | AUC, chosen on other gearboxes | indicators tried |", "|---|---|---|---|"]

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from planted_set import Plant, measured
-from planted_traps import FOUND_AS, TRAPS, with_permuted_states
+from planted_traps import FOUND_AS, TRAPS, labelled, with_permuted_states
 
 from diagnostics.audit import condition_traps
 from diagnostics.audit import traps as findings
@@ -111,6 +111,16 @@ def test_detectors_see_no_label_of_damage_and_nothing_that_follows_from_it(clean
     assert set(condition_layers(clean)) == {"metadata", "texts", "order", "bytes", "noise", "channels"} | raw
     shown = [name for _, names in condition_layers(clean).values() for name in names]
     assert not {"record_id", "damaged_area_mm2", "snr_lid_x_db", "mesh_stiffness_loss"} & set(shown)
+
+
+def test_pulses_are_held_against_the_first_shaft_whatever_it_is_called(clean: MeasuredSet) -> None:
+    rate = clean.values["pulses_per_s"][:, 0]
+    names = {"input": "input_shaft_hz", "output": "output_shaft_hz"}
+    set_of_machine = replace(
+        labelled(clean, input_shaft_hz=rate, output_shaft_hz=0.5 * rate), about={"shaft_hz": names}
+    )
+    values, columns = condition_layers(set_of_machine)["metadata"]
+    assert (values[:, columns.index("distance of the pulses from the shaft's frequency")] == 0.0).all()
 
 
 @pytest.mark.slow

@@ -133,6 +133,10 @@ def test_the_file_is_small_and_gives_the_network_back(tmp_path: Path) -> None:
     save_gearbox_network(GearboxNetwork(KINDS, (24, 32), network.weights), tmp_path / "other", facts)
     with pytest.raises(UsageError, match=r"another schema \(shape of of_gear\.weight\); train again"):
         load_gearbox_network(tmp_path / "other")
+    network.limits.farthest = np.zeros((1, 3))
+    save_gearbox_network(network, tmp_path / "other", facts)
+    with pytest.raises(UsageError, match=r"another schema \(shape of farthest\); train again"):
+        load_gearbox_network(tmp_path / "other")
 
 
 class Stopped(Exception):
