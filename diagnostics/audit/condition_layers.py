@@ -34,7 +34,6 @@ from itertools import combinations
 import numpy as np
 
 from diagnostics.audit.averaged_lines import line_array
-from diagnostics.audit.finding import must_not_tell
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.raw_records import OF_NO_GEARBOX
 from diagnostics.indicators.background_levels import HIGHEST_NOISE_SHARE, LOWEST_NOISE_HZ, NOISE_BANDS, NOISE_LEVELS
@@ -425,28 +424,25 @@ def _between_channels(noise: dict[str, np.ndarray], channels: tuple[str, ...]) -
 
 def _texts(measured: MeasuredSet) -> dict[str, np.ndarray]:
     columns: dict[str, np.ndarray] = {}
-    for name, values in measured.labels.items():
-        if values.ndim == 1 and values.dtype.kind not in "biuf" and must_not_tell(measured.roles, name):
+    conditions, specimen = measured.steady_conditions, measured.labels["specimen_id"]
+    for name, values in conditions.items():
+        if values.dtype.kind not in "biuf":
             columns |= text_columns(name, values)
-        if values.ndim == 1 and values.dtype.kind in "iu" and must_not_tell(measured.roles, name):
+        if values.dtype.kind in "iu":
             columns |= residue_columns(name, values)
-        if values.ndim == 1 and values.dtype.kind == "f" and must_not_tell(measured.roles, name):
-            columns |= digit_columns(name, values) | repeated_values(name, values, measured.labels["specimen_id"])
+        if values.dtype.kind == "f":
+            columns |= digit_columns(name, values) | repeated_values(name, values, specimen)
+    for name, values in measured.labels.items():
         if values.ndim == 1 and values.dtype.kind == "f" and measured.roles.get(name) == Role.MEASURED:
             columns |= zero_signs(name, values)  # damage moves a measured number, but not how zero is written
-    few = {
-        name: values
-        for name, values in measured.labels.items()
-        if values.ndim == 1 and values.dtype.kind in "biuU" and must_not_tell(measured.roles, name)
-    }
-    return columns | pair_columns(few)
+    return columns | pair_columns({name: values for name, values in conditions.items() if values.dtype.kind in "biuU"})
 
 
 def _metadata(measured: MeasuredSet) -> dict[str, np.ndarray]:
     numbers = {
         name: values.astype(np.float64)
-        for name, values in measured.labels.items()
-        if values.ndim == 1 and values.dtype.kind in "biuf" and must_not_tell(measured.roles, name)
+        for name, values in measured.steady_conditions.items()
+        if values.dtype.kind in "biuf"
     }
     pulses = {name: measured.values[name][:, 0] for name in (*PULSES, "samples") if name in measured.values}
     return numbers | pulses | _beside_labels(measured, pulses)

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from diagnostics.audit.finding import must_not_tell
 from diagnostics.audit.raw_records import RawColumns, raw_columns
 from diagnostics.indicators.classifier_table import check_table
 from diagnostics.indicators.line_levels import LEVELS
@@ -230,6 +231,19 @@ class MeasuredSet:
         """(records,) bool: which records are of states that change no key of the machine."""
         changed = self.labels.get(CHANGED)
         return np.ones(len(self.healthy), dtype=bool) if changed is None else np.array([not one for one in changed])
+
+    @property
+    def conditions(self) -> dict[str, np.ndarray]:
+        """Labels that must not tell a state, (records,) each."""
+        return {
+            name: values for name, values in self.labels.items() if values.ndim == 1 and must_not_tell(self.roles, name)
+        }
+
+    @property
+    def steady_conditions(self) -> dict[str, np.ndarray]:
+        """Conditions without those of sections that a state changes, since there a changed state differs on purpose."""
+        changed = {key.partition(".")[0] for keys in self.labels.get(CHANGED, ()) for key in keys}
+        return {name: values for name, values in self.conditions.items() if self.sections.get(name) not in changed}
 
     def states(self) -> tuple[str, ...]:
         """Return the states in the order of the configuration."""

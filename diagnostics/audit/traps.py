@@ -36,7 +36,7 @@ from diagnostics.audit.bank import ChanceLimit, gearboxes_needed
 from diagnostics.audit.condition_layers import CHANNELS, LAGS, NOISE
 from diagnostics.audit.condition_traps import LEVELS, condition_traps
 from diagnostics.audit.detectability import FEWEST_SPECIMENS
-from diagnostics.audit.finding import LARGEST_AUC, MEND, MENDS, Finding, must_not_tell
+from diagnostics.audit.finding import LARGEST_AUC, MEND, MENDS, Finding
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.audit.raw_records import EDGES, ENDS, TEMPLATES
 from diagnostics.base.seeding import Purpose, generator
@@ -282,13 +282,8 @@ def tied_columns(measured: MeasuredSet, seed: int = 0) -> dict[str, list[Tie]]:
 
 
 def _columns(measured: MeasuredSet) -> dict[str, np.ndarray]:
-    labels = {
-        name: values
-        for name, values in measured.labels.items()
-        if values.ndim == 1 and must_not_tell(measured.roles, name)
-    }
     seen = {name: measured.values[name][:, 0] for name in MEASURED_COLUMNS if name in measured.values}
-    return {**labels, **seen}
+    return {**measured.conditions, **seen}
 
 
 def _group(measured: MeasuredSet, name: str) -> str:

@@ -22,6 +22,7 @@ from diagnostics.audit.traps import (
     told_shares,
     verdict,
 )
+from siggen.keys.column import Role
 from tests.diagnostics.column_roles import ListedRoles
 
 LAYER = "state_told_by_"
@@ -121,6 +122,20 @@ def test_pulses_are_held_against_the_first_shaft_whatever_it_is_called(clean: Me
     )
     values, columns = condition_layers(set_of_machine)["metadata"]
     assert (values[:, columns.index("distance of the pulses from the shaft's frequency")] == 0.0).all()
+
+
+def test_what_a_state_changes_on_purpose_may_tell_it(clean: MeasuredSet) -> None:
+    severe = clean.labels["state"] == "severe"
+    rng = np.random.default_rng(1)
+    lead_um = rng.uniform(0.0, 5.0, 12)[clean.labels["specimen_id"]] + rng.uniform(15.0, 30.0, severe.size) * severe
+    keys = np.array([["manufacture.pitch_error_um"] if changed else [] for changed in severe] + [[]], dtype=object)[:-1]
+    moved = replace(relabelled(clean, pitch_error_um=lead_um), sections={"pitch_error_um": "manufacture"})
+    told = {name for _, names in condition_layers(moved).values() for name in names if "pitch_error_um" in name}
+    assert {"pitch_error_um", "pitch_error_um that its gearbox has twice"} <= told
+    on_purpose = replace(
+        moved, labels={**moved.labels, "changed_keys": keys}, roles={**moved.roles, "changed_keys": Role.TARGET}
+    )
+    assert not any("pitch_error_um" in name for _, names in condition_layers(on_purpose).values() for name in names)
 
 
 @pytest.mark.slow
