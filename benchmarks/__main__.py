@@ -23,7 +23,7 @@ from siggen.child_environment import ONE_THREAD
 
 DEFAULT = (
     *("presets", "precision", "loader", "cold", "memory", "startup", "score"),
-    *("workers", "quickstart", "indicators", "pages", "house"),
+    *("workers", "quickstart", "indicators", "pages"),
 )
 """CPU time and memory first, then wall time, then what takes long."""
 APART = ("anywhere", "start", "many_workers", "growth", "stream")

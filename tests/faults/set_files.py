@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -13,14 +12,6 @@ from siggen.file_writing import LEFTOVER_SUFFIX
 def set_files(storage: Storage) -> dict[str, bytes]:
     """Return name -> content of all files."""
     return {name: storage.get(name) for name in storage.names()}
-
-
-def digest(files: Mapping[str, bytes]) -> str:
-    """Return the SHA-256 of names and contents."""
-    total = hashlib.sha256()
-    for name in sorted(files):
-        total.update(f"{name} {hashlib.sha256(files[name]).hexdigest()}\n".encode())
-    return total.hexdigest()
 
 
 def whole_set_problems(folder: Path, found: Mapping[str, bytes], reference: Mapping[str, bytes]) -> list[str]:
