@@ -8,7 +8,7 @@ Derived. A line load q(y) on two half spaces displaces the line, relative to the
 for cells of width w: Boussinesq's solution at the surface, with a width ε that gives an endless line exactly the
 secant compliance of Weber and Banaschek, ln(2 h/a) - ν/(2 (1 - ν)); their depth h takes away the rest. Cells are part
 of the model: from w = 0.7 to 3 a the losses of pair stiffness are those of the contact in three dimensions to 0.9
-points (`tests.reference.contact.comparisons`); narrower cells let the short waves become too soft.
+points (`tests/gears/contact/test_face_force.py`); narrower cells let the short waves become too soft.
 
 The law of a is written as an energy (`face_force`): ½ u·K u with a of the load itself gives Weber and Banaschek's
 secant only with ε e^-¼ in place of ε, since a grows with the load that does the work. `diagonal` and `strengths`
@@ -290,18 +290,7 @@ class KernelFamily(NamedTuple):
 
 @lru_cache(maxsize=8)
 def kernel_family(cells: int, cell_m: float, depth_m: float) -> KernelFamily:
-    """Return the exponentials of a face of equal cells; `depth_m` is a typical h, which sets the longest decay.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than two cells, or their width or the depth is not positive.
-    """
-    if cells < 2 or not cell_m > 0.0 or not depth_m > 0.0:
-        raise ValueError(
-            f"kernel of {cells} cells of {cell_m} m at the depth {depth_m} m; "
-            "allowed: at least 2 cells, lengths above 0"
-        )
+    """Return the exponentials of a face of equal cells; `depth_m` is a typical h, which sets the longest decay."""
     lengths = np.geomspace(SHORTEST_CELLS, max(LONGEST_DEPTHS * depth_m / cell_m, 2.0), EXPONENTIALS)
     decay = np.exp(-1.0 / lengths)
     offset = np.arange(1, cells)
@@ -430,15 +419,7 @@ class ToothKernel(NamedTuple):
 
 
 def unit_tooth(slices: int, face_width_m: float, length_m: float) -> ToothKernel:
-    """Return T itself for n slices of a face b [m] and a length l [m], which may be infinite.
-
-    Raises
-    ------
-    ValueError
-        If the length is not positive.
-    """
-    if not length_m > 0.0:
-        raise ValueError(f"tooth across the face: received a length of {length_m} m; allowed: above 0")
+    """Return T itself for n slices of a face b [m] and a length l [m], which may be infinite."""
     return ToothKernel(*_free_ends(slices, face_width_m / (slices * length_m)), 1.0)
 
 

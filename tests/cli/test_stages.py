@@ -134,15 +134,6 @@ def test_the_card_and_the_plan_name_every_mesh(made: Path) -> None:
     assert f"{30.0 * 18 / 47 * 17:.6g} Hz" in told.stdout
 
 
-IRREGULAR = [
-    {"name": "healthy"},
-    {
-        "name": "severe",
-        "damage": {"kind": "irregular", "gear": "slow_pinion", "profile_length_mm": 1.0, "face_share": 0.5},
-    },
-]
-
-
 @pytest.mark.parametrize(
     ("changes", "path", "allowed"),
     [

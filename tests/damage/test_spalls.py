@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi, sqrt
+from math import sqrt
 
 import numpy as np
 import pytest
@@ -159,15 +159,6 @@ def test_spalls_are_clipped_to_face_and_flank():
     assert largest_contact_length_loss(GEAR, [beyond], WIDTH) == pytest.approx(2e-3, rel=1e-14)
     assert np.array_equal(
         pair_stiffness(PAIR, S, OPTIONS, [beyond]), pair_stiffness(PAIR, S, OPTIONS, [box(4.0, 9.0, 0.0, 2.0)])
-    )
-
-
-def ring(scale: float, shift_mm: float = 0.0, corners: int = 7, depth: float = 0.2):
-    """Return a spall of many corners about one middle: several trapezoids, none of which holds another ring."""
-    angle = 2.0 * pi * np.arange(corners) / corners + 0.3
-    heights, faces = 2.5 + 0.8 * scale * np.sin(angle), 9.0 + shift_mm + 4.0 * scale * np.cos(angle)
-    return FlankSpall(
-        "pinion", 0, Polygon(tuple(zip((heights * MM).tolist(), (faces * MM).tolist(), strict=True))), depth * MM
     )
 
 

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from siggen.checks.loading import load_config
-from siggen.drivetrain.box import Material
 from siggen.drivetrain.forced_motion import ForcedMotion, MeanMesh, forced_motion
 from siggen.drivetrain.gear_stage import Base
 from siggen.drivetrain.makers import on_base
@@ -44,12 +43,6 @@ def housed(specimen_id: int) -> SpecimenHousing:
 def in_mesh(stage: Structure, hz: np.ndarray, motions: tuple[str, ...] = ()) -> ForcedMotion:
     """Return what a force along the line of action does."""
     return forced_motion(stage, MESH, stage.mesh.vector[None, :], motions, hz)
-
-
-@pytest.fixture
-def stiff(monkeypatch) -> None:
-    """Let walls be 10,000 times as stiff as those of steel."""
-    monkeypatch.setattr("siggen.gearbox.housing._material", lambda _: Material(2.06e15, 0.3, 7850.0))
 
 
 @pytest.mark.parametrize("share", [1.0, 0.1])

@@ -186,29 +186,6 @@ def test_a_middle_shaft_too_heavy_to_move_leaves_two_single_stages() -> None:
         assert rms(velocities[name] - expected) < 1e-6 * rms(expected)
 
 
-def smooth(mesh: SpecimenMesh) -> SpecimenMesh:
-    """Return a mesh whose pairs of one stiffness take the load from each other evenly, so that their sum is constant.
-
-    Kinks of the ramps lie between points of the table: they leave about 1e-7 of a sum.
-    """
-    tables = mesh.tables
-    ratio = (tables.end_m - tables.start_m) / tables.base_pitch_m
-    place = np.linspace(0.0, ratio, tables.pair_stiffness_n_per_m.shape[1])
-    share = np.clip(np.minimum(place, ratio - place) / (ratio - 1.0), 1e-12, 1.0)
-    even = replace(tables, pair_stiffness_n_per_m=4e8 * share[None] * np.ones((len(tables.pair_stiffness_n_per_m), 1)))
-    return replace(mesh, tables=even, contact=None, coupling_m_per_n=None)
-
-
-def lines(motion: PairMotion, point: OperatingPoint, orders: Sequence[float]) -> FloatArray:
-    """Return what the velocity of the first pinion's bearing has at orders of the first mesh, of its own line."""
-    pitches = 18 * point.speed_hz * STEP_S * np.arange(200_001) + 0.3
-    velocity = run(motion, pitches)[40_000:, motion.structure.coordinates.index("y_pinion")]
-    window = np.blackman(velocity.size) ** 2
-    phases = np.exp(-2j * pi * np.outer((1.0, *orders), pitches[40_000:]))
-    found = np.abs(phases @ (window * (velocity - velocity.mean())))
-    return found[1:] / found[0]
-
-
 def test_all_teeth_meet_as_at_the_start_after_the_hunting_turns_and_not_before() -> None:
     found, specimen, _, _ = machine()
     whole = int(specimen.hunting_turns)

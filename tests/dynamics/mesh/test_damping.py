@@ -12,7 +12,6 @@ from siggen.mesh.pair_law import PairLaw
 from siggen.mesh.pair_springs import pair_table
 from tests.dynamics.pair_runs import gear_pair, law
 
-FILM, LENGTH, OIL = 0.8e-6, 20e-3, 0.112
 DOUBLE, SINGLE = 5.3, 5.85
 """Angles with two pairs and with one pair in contact: the contact ratio is 1.637."""
 

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from math import pi, sqrt
+
 import numpy as np
 from scipy.optimize import least_squares
 
 from siggen.mesh.contact_edges import NOTCH_POWER, QUARTER_PLANE
-from tests.reference.contact.case import KAPPA, LINE_LOADS, RADIUS_M, half_width
 from tests.reference.contact.notched_half_plane import notched_edge_sink
 from tests.reference.contact.plane_contact import edge_sink
 
+RADIUS_M, POISSON = 6.676e-3, 0.3
+"""Teeth 18/47 of module 3 mm at the pitch point."""
+KAPPA = 4.0 * (1.0 - POISSON**2) / (pi * 206e9)
+LINE_LOADS = (30e3, 60e3, 100e3)
 NAMES = ("NOTCH_SCALE", "NOTCH_ON_LAND", "NOTCH_SHALLOW", "NOTCH_SHALLOW_LINEAR")
 DEPTHS_M = (0.03e-3, 0.05e-3, 0.1e-3, 0.2e-3, 0.4e-3)
 AHEAD = (2.0, 1.75, 1.5, 1.25, 1.0, 0.75, 0.5, 0.25, 0.0, -0.5, -1.0, -2.0, -3.7, -6.0, -11.0, -16.0)
@@ -18,6 +23,11 @@ SHALLOW, SHALLOW_WEIGHT = 0.5, 0.4
 SMALL = 0.15
 """N below which errors count absolutely."""
 LAND_M = 0.26e-3
+
+
+def half_width(line_load_n_per_m: float) -> float:
+    """Return Hertz's half width [m]."""
+    return sqrt(2.0 * RADIUS_M * KAPPA * line_load_n_per_m)
 
 
 def fitted() -> dict[str, float]:
