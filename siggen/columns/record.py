@@ -213,18 +213,6 @@ def listed_columns(schema: pa.Schema) -> list[dict[str, str]]:
     ]
 
 
-def signal_channels(schema: pa.Schema) -> tuple[ChannelColumn, ...]:
-    """Return the channels that a file's schema describes, in column order."""
-    found = []
-    for field in schema:
-        facts = {key.decode(): value.decode() for key, value in (field.metadata or {}).items()}
-        if pa.types.is_fixed_size_list(field.type) and "sensor" in facts:
-            place = facts["sensor"], facts["place"], facts["axis"]
-            quantity = facts.get("quantity", BEFORE_QUANTITIES)
-            found.append(ChannelColumn(f"{place[0]}_{place[2]}", *place, facts["unit"], field.name, quantity))
-    return tuple(found)
-
-
 def record_batch(columns: SetColumns, records: Sequence[SimulatedRecord]) -> pa.RecordBatch:
     """Return records as rows of `record_schema`.
 

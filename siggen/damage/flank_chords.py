@@ -92,14 +92,7 @@ def flank_chords(gear: SpurGear, pits: Iterable[ToothDamage], face_width_m: floa
     face_width_m : float
     slices : int
         Equal slices across the face, at least 1.
-
-    Raises
-    ------
-    ValueError
-        If there is no slice or a pit is impossible.
     """
-    if slices < 1:
-        raise ValueError(f"slices: received {slices}; allowed are whole numbers from 1")
     rows = pit_rows(one for one in pits if has_extent(one))
     face, covered = _covered(face_width_m, slices, rows)
     highest = float(gear.height_m(min(BEYOND_TIP * gear.last_roll_rad, 0.5 * pi)))

@@ -150,16 +150,8 @@ def worn_until(
     depth_m, turns : float
         Largest depth of either gear [m]; turns of the pinion. What comes first ends it; one at least is finite.
 
-    Raises
-    ------
-    ValueError
-        If nothing ends it.
-
     Source: see this module.
     """
-    if not (min(depth_m, turns) < np.inf and coefficient_m2_per_n > 0.0):
-        received = f"coefficient {coefficient_m2_per_n} m²/N, depth {mm(depth_m)}, {turns} turns"
-        raise ValueError(f"wear: received {received}; allowed: a coefficient above 0, and a finite depth or turns")
     position = np.linspace(pair.contact_start_m, pair.contact_end_m, POINTS)
     factors = turn_factors(pair, position, coefficient_m2_per_n)
     worn = Worn(np.zeros(POINTS), np.zeros(POINTS), 0.0)

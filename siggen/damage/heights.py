@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite, sqrt, tan
+from math import sqrt, tan
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -49,10 +49,8 @@ def axial_height(gear: SpurGear, value_m: float, reading: str) -> float:
     Raises
     ------
     ValueError
-        If the value is negative or not finite, or the reading unknown.
+        If the reading is unknown.
     """
-    if not (isfinite(value_m) and value_m >= 0.0):
-        raise ValueError(f"received height {value_m!r} m above the base circle; allowed: finite and at least 0")
     if reading == "axial":
         return float(value_m)
     ratio = value_m / gear.base_radius_m

@@ -136,14 +136,7 @@ def layered_centres(
         Height of the first layer and centre of the layers across the face [m].
     between : bool
         Whether the centre lies between two pits.
-
-    Raises
-    ------
-    ValueError
-        If there is no layer or no pit.
     """
-    if layers < 1 or per_layer < 1:
-        raise ValueError(f"received {layers} layers of {per_layer} pits; allowed: at least 1 of each")
     index = np.arange(per_layer)
     side = np.where(index % 2 == 1, 1.0, -1.0)
     steps = -side * (index // 2 + 0.5) if between else side * ((index + 1) // 2)
@@ -179,19 +172,7 @@ def clustered_centres(
         Limits across the face [m].
     height_low_m, height_high_m : float
         Limits of the heights [m].
-
-    Raises
-    ------
-    ValueError
-        If the count is below 1, a spread negative, or limits leave no room.
     """
-    if count < 1:
-        raise ValueError(f"received {count} pits; allowed: at least 1")
-    if not (height_low_m <= height_high_m and face_low_m <= face_high_m):
-        raise ValueError(
-            f"received limits {height_low_m:.6g} to {height_high_m:.6g} m and {face_low_m:.6g} to {face_high_m:.6g} m; "
-            "allowed: low at most high"
-        )
     uniform = rng.random((count, 2))
     height = _cut_normal(uniform[:, 0], height_centre_m, height_spread_m, height_low_m, height_high_m)
     return height, face_low_m + (face_high_m - face_low_m) * uniform[:, 1]
@@ -200,8 +181,6 @@ def clustered_centres(
 def _cut_normal(uniform: FloatArray, mean: float, spread: float, low: float, high: float) -> FloatArray:
     from scipy.special import ndtr, ndtri
 
-    if not spread >= 0.0:
-        raise ValueError(f"received spread {spread!r} m; allowed: at least 0")
     if spread == 0.0:
         return np.full(uniform.size, min(max(mean, low), high))
     first, last = ndtr((low - mean) / spread), ndtr((high - mean) / spread)

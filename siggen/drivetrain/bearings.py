@@ -119,15 +119,7 @@ class BallBearing:
         return float(self.balls * cos(self.contact_angle_rad) * (weights * load * np.cos(place)).sum() / (2.0 * pi))
 
     def deflection_m(self, force_n: float) -> float:
-        """Return how far the rings are moved under a radial force from 0 on [m], the closed clearance included.
-
-        Raises
-        ------
-        ValueError
-            If the force is negative or not finite.
-        """
-        if not 0.0 <= force_n < np.inf:
-            raise ValueError(f"force_n: received {force_n}; allowed are finite forces from 0")
+        """Return how far the rings are moved under a radial force from 0 on [m], the closed clearance included."""
         low = max(0.5 * self.clearance_m, 0.0) / cos(self.contact_angle_rad)
         if force_n == 0.0:
             return low

@@ -154,11 +154,6 @@ class Box:
             if not 0.0 < seat.bore_radius_m < seat.boss_radius_m <= room:
                 received = f"seat {name}: received bore {seat.bore_radius_m} m and boss {seat.boss_radius_m} m"
                 raise ValueError(f"{received}; allowed: 0 < bore < boss <= {room} m, the distance to the next edge")
-        for bolt in self.bolts:
-            least = 0.5 * bolt.patch_m * (1.0 - 1e-9)
-            if not (least <= bolt.x_m <= length - least and least <= bolt.z_m <= 0.5 * width):
-                received = f"bolt: received x {bolt.x_m} m, z {bolt.z_m} m with a patch of {bolt.patch_m} m"
-                raise ValueError(f"{received}; allowed: on the floor's front half, the patch within the floor")
         for strip in self.strips:
             _check_strip(strip, width)
 

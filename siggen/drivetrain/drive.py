@@ -45,12 +45,6 @@ class Drive:
     speed_hz: float
     start_angle_rad: float
 
-    def __post_init__(self) -> None:
-        if not (np.isfinite(self.speed_hz) and self.speed_hz > 0.0):
-            raise ValueError(f"speed_hz: received {self.speed_hz}; allowed are finite speeds above 0")
-        if not np.isfinite(self.start_angle_rad):
-            raise ValueError(f"start_angle_rad: received {self.start_angle_rad}; allowed are finite angles")
-
     def angle_rad(self, time_s: FloatArray) -> FloatArray:
         """Return the integrated pinion angle (k,) [rad] at the times (k,) [s]; time 0 is the first sample."""
         return self.start_angle_rad + 2.0 * np.pi * self.speed_hz * time_s

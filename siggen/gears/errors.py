@@ -189,17 +189,8 @@ def gear_errors(
     limits : FlankTolerances, largest deviations allowed, as a share of a class's tolerances
     runout_share : float
         Runout over its limit; less where eccentricity alone would already pass another limit (few teeth).
-
-    Raises
-    ------
-    ValueError
-        If the runout share is not from 0 to 1, or the shapes are not those of this gear's number of teeth.
     """
     teeth = pair.member(side).teeth
-    if not 0.0 <= runout_share <= 1.0:
-        raise ValueError(f"runout_share: received {runout_share}; allowed: 0 to 1")
-    if shapes.pitch.size != teeth:
-        raise ValueError(f"shapes: received those of {shapes.pitch.size} teeth; the {side} has {teeth}")
     eccentricity = _eccentricity(pair, side, shapes, limits, runout_share)
     alone = GearErrors(eccentricity, shapes.phase_rad, *_nothing(teeth))
     turned = deviations(pair, side, alone).cumulative_pitch_m

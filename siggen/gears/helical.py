@@ -83,15 +83,3 @@ def carrying_middle_m(pair: GearPair, position_m: FloatArray) -> FloatArray:
     half = 0.5 * pair.face_travel_m
     low, high = pair.contact_start_m, pair.contact_end_m
     return 0.5 * (np.clip(position_m - half, low, high) + np.clip(position_m + half, low, high))
-
-
-def contact_length_m(pair: GearPair, pitches: FloatArray, slices: int) -> FloatArray:
-    """Return the length of all contact lines (k,) [m] of rigid flanks, by slices.
-
-    `pitches` (k,) count from where a pair enters, in base pitches.
-    """
-    start, end, pitch = pair.contact_start_m, pair.contact_end_m, pair.base_pitch_m
-    place = pair.engagement_start_m + pitches[:, np.newaxis] % 1.0 * pitch + slice_shifts_m(pair, slices)
-    count = int((pair.engagement_end_m - pair.engagement_start_m) / pitch) + 2
-    inside = sum(((place + n * pitch >= start) & (place + n * pitch < end)).sum(axis=1) for n in range(count))
-    return np.asarray(inside) * pair.face_width_m / slices / cos(pair.base_helix_rad)

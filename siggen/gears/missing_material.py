@@ -139,17 +139,7 @@ def missing_material(
 
     Without corner contact the tables end with the path of contact: a pair that enters is loaded at once. With it they
     reach `reach_pitches` base pitches further at both ends, in a ring `RING_REACH_PITCHES` at least.
-
-    Raises
-    ------
-    ValueError
-        If the relief is negative or longer than a base pitch, or there are fewer than 2 points.
     """
-    if points < 2:
-        raise ValueError(f"received {points} table points; allowed: at least 2")
-    if relief is not None and not (relief.amount_m >= 0.0 and 0.0 < relief.length_m <= pair.base_pitch_m):
-        allowed = f"allowed are amounts from 0 and lengths above 0 up to a base pitch, {pair.base_pitch_m:.6g} m"
-        raise ValueError(f"tip relief: received {relief.amount_m} m over {relief.length_m} m; {allowed}")
     reach_m = _reach_pitches(pair, reach_pitches) * pair.base_pitch_m if corner_contact else 0.0
     start_m, end_m = pair.engagement_start_m - reach_m, pair.engagement_end_m + reach_m
     position_m = np.linspace(start_m, end_m, points)

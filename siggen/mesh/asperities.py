@@ -78,9 +78,9 @@ def asperity_table(
     Raises
     ------
     ValueError
-        If the range, the force, a roughness or the number of points is impossible.
+        If the range or the force is impossible.
     """
-    _check(mesh, roughness_m, range_m, points)
+    _check(mesh, range_m, points[0])
     position = _positions(mesh, range_m, points[0])
     floor = LOAD_FLOOR * mesh.contact_length_m * mesh.effective_modulus_pa
     lowest = np.asarray(floor * relative_radius(position, mesh.line_m))
@@ -172,27 +172,12 @@ def cell_value(values: FloatArray, first: Whole, loads: int, a: Lanes, b: Lanes)
     return low * (1.0 - b) + (high_0 * (1.0 - a) + high_1 * a) * b
 
 
-@entry(cache=True)
-def asperity_share(table: AsperityTable, layer: int, position_m: float, force_n: float) -> float:
-    """Return the asperity share La of a contact, 0 to 1."""
-    return mixed_contact(table, layer, position_m, force_n)[0]
-
-
-def _check(
-    mesh: LubricatedMesh,
-    roughness_m: Sequence[float],
-    range_m: tuple[float, float],
-    points: tuple[int, int],
-) -> None:
-    if min(points) < 3:
-        raise ValueError(f"points: received {points}; allowed are at least 3 each")
-    cell = _cell_m(range_m, points[0])
+def _check(mesh: LubricatedMesh, range_m: tuple[float, float], points: int) -> None:
+    cell = _cell_m(range_m, points)
     last = mesh.line_m if mesh.line_m > 0.0 else np.inf  # a hollow flank has no base point behind the contact
     if not cell < range_m[0] < range_m[1] < last - cell:
         allowed = f"allowed is a rising pair inside 0 to {last:.6g} m by more than a cell"
         raise ValueError(f"range_m: received {range_m}; {allowed}")
-    if not roughness_m or not all(np.isfinite(value) and value >= 0.0 for value in roughness_m):
-        raise ValueError(f"roughness_m: received {tuple(roughness_m)}; allowed is at least one finite value from 0")
 
 
 # RubbingCourse: how strongly rough flanks excite the mesh over one tooth pitch.

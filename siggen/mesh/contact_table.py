@@ -668,7 +668,7 @@ def contact_table(
     healthy, row = _healthy(pair, stiffness, options, points, tuple(even.tolist()))
     solver = table_solver(pair, stiffness, options, even)
     parts = [(healthy.touch_m[0], healthy.column[0], healthy.gain[0], healthy.curves)]
-    for kind in pair_kinds(pair, damage)[1:]:
+    for kind in pair_kinds(damage)[1:]:
         first = sum(len(curves) for *_, curves in parts)
         damaged = kind_row(pair, stiffness, options, points, pits_of_kind(damage, kind), row)
         parts.append(_damaged(solver, damaged, row, healthy, first))

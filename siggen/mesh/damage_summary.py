@@ -103,7 +103,7 @@ def _length_loss_m(pair: GearPair, side: Side, pits: Damage) -> float:
 def _through_face(pair: GearPair, damage: Damage) -> bool:
     if pair.helix_rad == 0.0:
         return any(lost_contacts(pair, damage))
-    kinds = pair_kinds(pair, damage)[1:]
+    kinds = pair_kinds(damage)[1:]
     meeting = ((pits_of(damage, Side.DRIVER, first), pits_of(damage, Side.DRIVEN, second)) for first, second in kinds)
     return any(largest_line_loss(pair, *pits)[1] for pits in meeting)
 

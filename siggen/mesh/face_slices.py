@@ -216,16 +216,7 @@ def face_gaps(pair: GearPair, pinion: FlankChords, gear: FlankChords, position_m
     pinion, gear : FlankChords
         Of as many slices.
     position_m : (k,)
-
-    Raises
-    ------
-    ValueError
-        If the flanks have different numbers of slices.
     """
-    if pinion.intervals.size != gear.intervals.size:
-        raise ValueError(
-            f"flanks of {pinion.intervals.size} and {gear.intervals.size} slices; allowed: as many on both"
-        )
     shape = (position_m.size, pinion.intervals.size)
     gaps = FaceGaps(*(np.zeros(shape) for shape in (*(6 * [shape]), (*shape, 2))))
     tips = tuple(0.5 * g.signed_base_radius_m * g.tip_roll_rad**2 for g in (pair.pinion, pair.gear))
@@ -581,21 +572,9 @@ def pair_faces(
         Relative radii of curvature of the slices [m]; None: as in the middle.
     rough : (k, n) or None
         Parts of slices that are rough land; None: none.
-
-    Raises
-    ------
-    ValueError
-        If the arrays do not fit.
     """
     count = gaps.left_m.shape[1]
-    if gaps.left_m.shape[0] != position_m.size or rest.rigid_m_per_n.shape != position_m.shape:
-        raise ValueError(
-            f"gaps at {gaps.left_m.shape[0]} and compliances at {rest.rigid_m_per_n.size} positions; "
-            f"allowed: as many as positions ({position_m.size})"
-        )
     leads = np.zeros(count) if lead_m is None else np.ascontiguousarray(lead_m, dtype=np.float64)
-    if leads.shape not in ((count,), (position_m.size, count)):
-        raise ValueError(f"lead_m: received shape {leads.shape}; allowed: ({count},), one for each slice")
     cell = pair.face_width_m / count
     face = cell * (np.arange(count) + 0.5) - 0.5 * pair.face_width_m
     rolls = {Side.DRIVER: position_m / pair.pinion.base_radius_m}

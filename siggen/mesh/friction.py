@@ -45,17 +45,7 @@ class FrictionLaw(NamedTuple):
 
 
 def composite_friction(table: AsperityTable, boundary: float, slip_speed_m_s: float = SLIP_SPEED_M_S) -> FrictionLaw:
-    """Return the composite law of a table of shares and fluid friction.
-
-    Raises
-    ------
-    ValueError
-        If the boundary friction is outside 0 to 1 or the slip speed is not positive.
-    """
-    if not 0.0 <= boundary <= 1.0:
-        raise ValueError(f"boundary: received {boundary}; allowed are 0 to 1, usual are 0.07 to 0.12")
-    if not (np.isfinite(slip_speed_m_s) and slip_speed_m_s > 0.0):
-        raise ValueError(f"slip_speed_m_s: received {slip_speed_m_s}; allowed are finite values above 0")
+    """Return the composite law of a table of shares and fluid friction."""
     return FrictionLaw(table, float(boundary), float(slip_speed_m_s))
 
 

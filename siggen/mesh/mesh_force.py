@@ -38,20 +38,9 @@ class MeshLaw(NamedTuple):
 
 
 def mesh_law(tables: MeshTables, damping_n_s_per_m: float, backlash_m: float) -> MeshLaw:
-    """Return the law of these tables with a constant mesh damping [N s/m] and a total normal backlash [m].
-
-    Raises
-    ------
-    ValueError
-        If damping or backlash is negative or not finite, or a stiffness is not positive and finite.
-    """
-    for name, value in (("damping_n_s_per_m", damping_n_s_per_m), ("backlash_m", backlash_m)):
-        if not (np.isfinite(value) and value >= 0.0):
-            raise ValueError(f"{name}: received {value}; allowed are finite values from 0")
+    """Return the law of these tables with a constant mesh damping [N s/m] and a total normal backlash [m]."""
     stiffness = read_only(tables.contributions_n_per_m, np.float64)
     # A pair of helical teeth begins and ends with nothing.
-    if not (np.isfinite(stiffness).all() and (stiffness >= 0.0).all() and (stiffness[:, 1:-1] > 0.0).all()):
-        raise ValueError(f"pair stiffness: received minimum {stiffness.min()} N/m; allowed are finite values above 0")
     length = tables.end_m - tables.start_m
     return MeshLaw(
         stiffness=stiffness,

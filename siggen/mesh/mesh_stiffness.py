@@ -370,14 +370,12 @@ def mesh_stiffness(
     Raises
     ------
     ValueError
-        If an angle is not finite, or the pits leave no section, or no contact where that is not allowed.
+        If the pits leave no section, or no contact where that is not allowed.
 
     Source: paper A, section 2.2 (pairs in parallel, only the pair of a damaged tooth is softer); with coupling 'body'
     derived (`siggen.mesh.body_coupling`).
     """
     angle = np.atleast_1d(np.asarray(angle_rad, dtype=np.float64))
-    if not np.all(np.isfinite(angle)):
-        raise ValueError("angle_rad holds values that are not finite; allowed: finite angles")
     index, count, position = pairs_in_contact(pair, angle)
     pinion_bad, gear_bad = damaged_teeth(damage, Side.DRIVER), damaged_teeth(damage, Side.DRIVEN)
     pinion_tooth, gear_tooth = count % pair.pinion.teeth, count % pair.gear.teeth

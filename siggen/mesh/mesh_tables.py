@@ -87,11 +87,9 @@ def mesh_tables(pair: GearPair, damage: Damage, options: StiffnessOptions, point
     Raises
     ------
     ValueError
-        If there are too few points, a damaged tooth does not exist, or pits leave no contact or no section.
+        If pits leave no contact or no section.
     """
-    if points < 2:
-        raise ValueError(f"received {points} table points; allowed: at least 2")
-    kinds = pair_kinds(pair, damage)
+    kinds = pair_kinds(damage)
     position = np.linspace(pair.engagement_start_m, pair.engagement_end_m, points)
     rows = table_of_pair(pair, kinds)
     alone = kind_stiffness(pair, damage, options, kinds, position)
@@ -116,24 +114,14 @@ def _coupled(
     alone: FloatArray,
 ) -> CoupledRows:
     runs, row_of_pair = neighbour_runs(pair, table_of_pair)
-    of_kinds = partial(kind_stiffness, pair, damage, options, pair_kinds(pair, damage))
+    of_kinds = partial(kind_stiffness, pair, damage, options, pair_kinds(damage))
     rows = coupled_contributions(pair, options, runs, of_kinds, position_m, alone)
     return CoupledRows(rows, row_of_pair, body_coupling(pair, options, position_m))
 
 
-def pair_kinds(pair: GearPair, damage: Damage) -> tuple[tuple[int, int], ...]:
-    """Return the distinct pairs as (pinion tooth, gear tooth), HEALTHY for any undamaged tooth; the healthy pair first.
-
-    Raises
-    ------
-    ValueError
-        If a damaged tooth does not exist.
-    """
+def pair_kinds(damage: Damage) -> tuple[tuple[int, int], ...]:
+    """Return the distinct pairs as (pinion tooth, gear tooth), HEALTHY for any undamaged tooth; healthy ones first."""
     pinion, gear = damaged_teeth(damage, Side.DRIVER), damaged_teeth(damage, Side.DRIVEN)
-    for side, teeth, count in ((Side.DRIVER, pinion, pair.pinion.teeth), (Side.DRIVEN, gear, pair.gear.teeth)):
-        outside = [tooth for tooth in teeth if not 0 <= tooth < count]
-        if outside:
-            raise ValueError(f"damage on {side} tooth {outside[0]}; allowed: 0 to {count - 1}")
     single = [(i, HEALTHY) for i in pinion] + [(HEALTHY, j) for j in gear]
     return ((HEALTHY, HEALTHY), *single, *((i, j) for i in pinion for j in gear))
 
@@ -197,7 +185,7 @@ def largest_stiffness_loss(pair: GearPair, damage: Damage, options: StiffnessOpt
     """
     if not damage:
         return 0.0
-    kinds = pair_kinds(pair, damage)
+    kinds = pair_kinds(damage)
     sequences = _sequences(pair, table_of_pair(pair, kinds))
     grid = _newest_positions(pair, damage)
     for _ in range(5):

@@ -188,9 +188,9 @@ def pair_law(
     Raises
     ------
     ValueError
-        If a number is negative or not finite, or tables do not fit together.
+        If tables do not fit together.
     """
-    _check(tables, missing, damping_ratio, mesh.backlash_m)
+    _check(tables, missing)
     packed = PackedTables(HEAD)
     scalars = np.zeros(SCALARS)
     pitch, ratio = tables.base_pitch_m, (tables.end_m - tables.start_m) / tables.base_pitch_m
@@ -217,12 +217,7 @@ def pair_law(
     return PairLaw(scalars, packed.numbers, packed.index)
 
 
-def _check(tables: MeshTables, missing: MissingMaterial, damping_ratio: float | DampingLaw, backlash_m: float) -> None:
-    ratios = (damping_ratio,) if isinstance(damping_ratio, (int, float)) else tuple(damping_ratio)
-    numbers = [("damping_ratio", value) for value in ratios] + [("backlash_m", backlash_m)]
-    for name, value in numbers:
-        if not (np.isfinite(value) and value >= 0.0):
-            raise ValueError(f"{name}: received {value}; allowed are finite values from 0")
+def _check(tables: MeshTables, missing: MissingMaterial) -> None:
     if min(tables.start_m - missing.start_m, missing.end_m - tables.end_m) < -1e-9 * tables.base_pitch_m:
         raise ValueError(
             f"missing material: received tables from {missing.start_m} m to {missing.end_m} m; allowed are tables "

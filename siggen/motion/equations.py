@@ -54,10 +54,8 @@ def equations_of_motion(
     Raises
     ------
     ValueError
-        If the torque is not finite, or torque and load do not balance on the rigid-body mode of the structure.
+        If torque and load do not balance on the rigid-body mode of the structure.
     """
-    if not np.isfinite(torque_nm):
-        raise ValueError(f"torque_nm: received {torque_nm}; allowed are finite torques")
     half = law.half_backlash_m
     touching_m = np.array([[half, -half]])
     return equations_about(structure, torque_nm, np.array([reference_stiffness]), touching_m, input_vectors)

@@ -85,10 +85,6 @@ class LinearMotion:
         integrator: str = "product",
         input_vectors: FloatArray | None = None,
     ) -> None:
-        if not (np.isfinite(mesh_damping_ratio) and mesh_damping_ratio >= 0.0):
-            raise ValueError(f"mesh_damping_ratio: received {mesh_damping_ratio}; allowed are finite values from 0")
-        if integrator not in INTEGRATORS:
-            raise ValueError(f"integrator: received {integrator!r}; allowed are {', '.join(INTEGRATORS)}")
         stiffness = mean_mesh_stiffness(tables)
         damping = 2.0 * mesh_damping_ratio * float(np.sqrt(stiffness * structure.mesh.mass_kg))
         self.structure = structure

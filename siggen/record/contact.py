@@ -94,7 +94,7 @@ def tip_relief(law: ToothLaw, pair: GearPair) -> TipRelief:
 def whole_face(pair: GearPair, damage: Damage, options: StiffnessOptions, points: int) -> MeshTables:
     """Return the healthy stiffness for every kind of pair: what the equations of motion count deviations from."""
     healthy = _healthy_tables(pair, options, points)
-    kinds = pair_kinds(pair, tuple(pit for pit in damage if has_extent(pit)))
+    kinds = pair_kinds(tuple(pit for pit in damage if has_extent(pit)))
     # Helical teeth end with no stiffness, but their corners touch beyond: a pair of none would not be in reach there.
     least = LEAST_STIFFNESS * healthy.pair_stiffness_n_per_m.max()
     stiffness = np.repeat(np.maximum(healthy.pair_stiffness_n_per_m, least), len(kinds), axis=0)

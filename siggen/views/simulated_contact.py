@@ -68,7 +68,7 @@ def simulated_contact(
     pair = static.pair
     inside = (position_m >= pair.engagement_start_m) & (position_m <= pair.engagement_end_m)
     shown = tuple(pit for pit in damage if has_extent(pit))
-    row = table_of_pair(pair, pair_kinds(pair, shown))[engagement % pair.pinion.teeth, engagement % pair.gear.teeth]
+    row = table_of_pair(pair, pair_kinds(shown))[engagement % pair.pinion.teeth, engagement % pair.gear.teeth]
     grid = np.linspace(pair.engagement_start_m, pair.engagement_end_m, contact.touch_m.shape[1])
     within, force = position_m[inside], static.force_n(torque_nm)
     sink, land, whole = np.full((3, position_m.size), np.nan)

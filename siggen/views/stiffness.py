@@ -103,8 +103,7 @@ def stiffness_curves(
     Raises
     ------
     ValueError
-        If there are no points or pitches, or the drawn damage cannot be computed by the stiffness model (the message
-        names it).
+        If the drawn damage cannot be computed by the stiffness model (the message names it).
     SolverFailure
         If what was drawn cannot be built.
     UsageError
@@ -113,8 +112,6 @@ def stiffness_curves(
     Source: paper A, section 2.2, by `siggen.mesh.mesh_stiffness`; where damage acts as geometry, force over
     approach at rest by `siggen.mesh.static_mesh`.
     """
-    if points_per_pitch < 1 or (pitches is not None and pitches < 1):
-        raise ValueError(f"received {points_per_pitch} points and {pitches} pitches; allowed: at least 1 of each")
     teeth = MeshTeeth(specimen.law, specimen.meshes[mesh].teeth)
     pair = teeth.pair
     damages = [on_teeth(teeth.damage(i)) for i in range(len(specimen.states))]

@@ -15,7 +15,6 @@ from siggen.columns.record import (
     non_finite,
     record_batch,
     record_schema,
-    signal_channels,
     signal_matrix,
 )
 from siggen.errors import DatasetError
@@ -55,7 +54,6 @@ def test_signals_are_fixed_size_lists_without_nulls_that_say_what_they_are() -> 
     assert not any(f.nullable for f in [*schema, *damage_schema(COLUMNS)])
     assert schema.metadata[b"siggen.identity"].decode() == CONFIG.identity
     assert schema.metadata[b"fs_hz"] == b"5120.0"
-    assert signal_channels(schema) == COLUMNS.channels
 
 
 def test_a_batch_holds_exactly_what_the_records_hold() -> None:

@@ -89,12 +89,10 @@ def test_worn_flanks_miss_their_depth_on_all_teeth_and_two_of_them_the_deeper() 
     np.testing.assert_array_equal(again.pinion.profile_m, worn.pinion.profile_m)
 
 
-def test_wear_without_depth_and_without_end_is_refused() -> None:
+def test_wear_without_depth_is_refused() -> None:
     assert [one.name for one in WornFlanks("gear", (0.0, 0.0)).own_problems()] == ["depths_m"]
     assert isinstance(next(WornFlanks("gear", (0.0, np.nan)).own_problems()), Refusal)
     assert not list(WornFlanks("gear", (0.0, 1e-6)).own_problems())
-    with pytest.raises(ValueError, match="a finite depth or turns"):
-        worn_until(PAIR, rigid, COEFFICIENT)
 
 
 def test_depths_in_the_table_run_from_the_root_to_the_tip_of_either_gear() -> None:

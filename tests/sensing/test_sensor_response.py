@@ -18,10 +18,3 @@ def test_a_coupling_capacitor_stops_the_mean_and_halves_the_power_at_its_corner(
     assert zero == 0.0
     assert 20.0 * np.log10(abs(corner)) == pytest.approx(-3.0103, abs=1e-4)
     assert abs(high) == pytest.approx(1.0, abs=1e-6)
-
-
-def test_what_cannot_be_is_refused() -> None:
-    with pytest.raises(ValueError, match="resonance"):
-        resonance_response(np.ones(1), 0.0, 0.1)
-    with pytest.raises(ValueError, match="corner"):
-        high_pass_response(np.ones(1), -1.0)

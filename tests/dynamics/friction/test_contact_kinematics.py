@@ -41,8 +41,5 @@ def test_the_relative_radius_is_that_of_the_two_flanks_in_series(share: float) -
     assert relative_radius(position, LINE) == pytest.approx(1.0 / (1.0 / position + 1.0 / (LINE - position)), rel=1e-12)
 
 
-def test_the_effective_modulus_of_steel_and_its_refusals() -> None:
+def test_the_effective_modulus_of_steel() -> None:
     assert effective_modulus(206e9, 0.3) == pytest.approx(226e9, rel=2e-3)
-    for modulus, ratio in ((0.0, 0.3), (np.nan, 0.3), (206e9, 0.6)):
-        with pytest.raises(ValueError, match="allowed"):
-            effective_modulus(modulus, ratio)

@@ -37,9 +37,3 @@ def test_constant_friction_and_friction_off() -> None:
     law = constant_friction(0.05, layers=2)
     assert friction_coefficient(law, 1, PITCH_POINT + 5e-3, FORCE) == pytest.approx(0.05, rel=1e-12)
     assert friction_coefficient(constant_friction(0.0), 0, PITCH_POINT, FORCE) == 0.0
-
-
-@pytest.mark.parametrize(("coefficient", "speed"), [(-0.1, 0.02), (1.5, 0.02), (np.nan, 0.02), (0.05, 0.0)])
-def test_impossible_laws_are_refused(coefficient: float, speed: float) -> None:
-    with pytest.raises(ValueError, match="allowed"):
-        constant_friction(coefficient, speed)

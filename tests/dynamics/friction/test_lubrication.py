@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from siggen.mesh.lubrication import LOAD_FLOOR, LubricatedMesh, central_film_m, film_ratio
+from siggen.mesh.lubrication import LOAD_FLOOR, central_film_m, film_ratio
 from tests.dynamics.lubricated import FORCE, PITCH_POINT, RANGE, mesh
 
 
@@ -57,10 +57,3 @@ def test_films_stay_finite_without_load_and_vanish_at_standstill() -> None:
 
 def test_film_ratio_of_two_flanks() -> None:
     assert film_ratio(1.2e-6, np.hypot(0.3e-6, 0.4e-6)) == pytest.approx(2.4, rel=1e-12)
-
-
-def test_impossible_numbers_are_refused_by_name() -> None:
-    with pytest.raises(ValueError, match="viscosity_pa_s"):
-        mesh(viscosity_pa_s=0.0)
-    with pytest.raises(ValueError, match="boundary_friction"):
-        LubricatedMesh(0.03, 100.0, 40.0, 0.02, 2e11, 0.1, 2e-8, 0.05, 323.0, float("nan"))

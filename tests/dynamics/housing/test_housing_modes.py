@@ -155,8 +155,6 @@ def test_a_box_is_refused_by_name() -> None:
     box = iron_box()
     with pytest.raises(ValueError, match="seat gear"):
         replace(box, seats={"gear": replace(box.seats["gear"], x_m=0.01)})
-    with pytest.raises(ValueError, match="bolt"):
-        replace(box, bolts=(replace(BOLTS[0], z_m=0.1),))
     with pytest.raises(ValueError, match="free"):
         housing_modes(iron_box(bolts=()))
 

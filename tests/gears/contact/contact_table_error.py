@@ -66,7 +66,7 @@ def contact_table_error(
     solver = table_solver(pair, stiffness, options, lead)
     fine = 2 * table.touch_m.shape[1] - 1  # every second point is the middle of an interval
     errors = [np.zeros(1)]
-    kinds = pair_kinds(pair, damage)
+    kinds = pair_kinds(damage)
     for row, kind in [*enumerate(kinds)][1:] or [(0, kinds[0])]:
         middles = kind_row(pair, stiffness, options, fine, pits_of_kind(damage, kind))
         near = np.flatnonzero((table.column[row] >= options.healthy_columns) | (row == 0))

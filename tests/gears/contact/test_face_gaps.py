@@ -11,7 +11,7 @@ from siggen.damage.flank_chords import flank_chords
 from siggen.damage.outlines import rectangle
 from siggen.damage.spalls import FlankSpall
 from siggen.mesh.contact_edges import NO_EDGE
-from siggen.mesh.face_slices import FaceGaps, FaceOptions, PairRest, _nearest, carrying_length, face_gaps, pair_faces
+from siggen.mesh.face_slices import FaceGaps, _nearest, carrying_length, face_gaps
 from tests.gears.builders import pair_18_47
 
 PAIR = pair_18_47(module_m=3e-3)
@@ -75,21 +75,6 @@ def test_the_carrying_length_is_the_land_or_the_whole_face():
     assert length(gap, np.where(gap > 0.0, whole, 0.0)) == pytest.approx(12e-3, rel=0.02)
     assert length(gap, np.where(gap > 0.0, 0.5 * whole, 0.0)) == pytest.approx(16e-3, rel=0.02)
     assert length(np.full(100, 0.6e-3), whole) == pytest.approx(20e-3)
-
-
-def rigid(positions: int) -> PairRest:
-    return PairRest(np.zeros(positions), np.zeros(positions), np.inf)
-
-
-def test_arrays_that_do_not_fit_are_refused():
-    other = flank_chords(PAIR.gear, (), PAIR.face_width_m, SLICES + 1)
-    with pytest.raises(ValueError, match="as many on both"):
-        face_gaps(PAIR, flanks()[0], other, np.array([PAIR.pitch_point_m]))
-    gaps = face_gaps(PAIR, *flanks(), np.array([PAIR.pitch_point_m]))
-    with pytest.raises(ValueError, match="as many as positions"):
-        pair_faces(PAIR, gaps, np.zeros(2), rigid(2), FaceOptions(60e3))
-    with pytest.raises(ValueError, match="one for each slice"):
-        pair_faces(PAIR, gaps, np.array([PAIR.pitch_point_m]), rigid(1), FaceOptions(60e3), np.zeros(3))
 
 
 @given(st.lists(st.tuples(st.integers(-9, 9), st.integers(0, 4)), min_size=1, max_size=6))

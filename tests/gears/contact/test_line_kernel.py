@@ -111,8 +111,3 @@ def test_rows_are_solved_like_a_full_matrix():
     add_row_products(teeth.strength, teeth.decay, right[:, 0].copy(), product)
     np.testing.assert_allclose(product, matrix @ right[:, 0] - own * right[:, 0], atol=1e-12)
     assert not solve_rows(found._replace(diagonal=own - 30.0), padded, 120, x, *room)
-
-
-def test_impossible_faces_are_refused():
-    with pytest.raises(ValueError, match="at least 2 cells"):
-        kernel_family(1, CELL, DEPTH)

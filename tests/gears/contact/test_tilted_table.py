@@ -67,7 +67,7 @@ def rows(damage: Damage) -> tuple[KindRow, int]:
     healthy = kind_row(pair, TEETH, OPTIONS, POINTS)
     if not damage:
         return healthy, 0
-    return kind_row(pair, TEETH, OPTIONS, POINTS, pits_of_kind(damage, pair_kinds(pair, damage)[1]), healthy), 1
+    return kind_row(pair, TEETH, OPTIONS, POINTS, pits_of_kind(damage, pair_kinds(damage)[1]), healthy), 1
 
 
 def from_table(table: ContactTable, chosen: PairLaw, row: int, point: int, where: np.ndarray) -> np.ndarray:

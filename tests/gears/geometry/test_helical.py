@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import cos, pi, radians, sin
 
 import numpy as np
 import pytest
 
 from siggen.gears.gear_pair import GearPair
-from siggen.gears.helical import contact_length_m, normal_gear
+from siggen.gears.helical import normal_gear
 from siggen.gears.spur_gear import transverse_gear
 from siggen.mesh.mesh_stiffness import mesh_stiffness, pair_stiffness
 from siggen.mesh.mesh_tables import mesh_tables
@@ -33,20 +32,6 @@ def test_the_sections_obey_the_identities_of_helical_gearing():
     assert heights[0] == pytest.approx(heights[2], rel=1e-12)
     assert heights[1] == pytest.approx(heights[2], rel=1e-12)
     assert section.teeth == pytest.approx(18 / (cos(pair.base_helix_rad) ** 2 * cos(helix)), rel=1e-12)
-
-
-@pytest.mark.parametrize("overlap", [0.4, 0.7, 1.0, 1.3])
-def test_contact_lines_are_as_long_as_their_fourier_series(overlap):
-    pair = helical_pair(15.0)
-    pair = replace(pair, face_width_m=pair.face_width_m * overlap / pair.overlap_ratio)
-    pitches, ratio, h = np.linspace(0.03, 0.97, 7), pair.contact_ratio, np.arange(1, 4001)
-    # The series of products of two boxes falls as 1/h²: 4,000 terms leave 2e-5.
-    waves = np.cos(2.0 * pi * h * (pitches[:, np.newaxis] - 0.5 * (ratio + overlap)))
-    series = 1.0 + (2.0 * np.sinc(h * ratio) * np.sinc(h * overlap) * waves).sum(axis=1)
-    expected = ratio * pair.face_width_m / cos(pair.base_helix_rad) * series
-    assert contact_length_m(pair, pitches, 20_001) == pytest.approx(expected, rel=1e-4)
-    if overlap == 1.0:
-        assert np.ptp(series) < 1e-12
 
 
 def test_tables_over_the_face_add_up_to_the_mesh_stiffness():

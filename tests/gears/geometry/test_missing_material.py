@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from siggen.gears.missing_material import CORNER_REACH_PITCHES, TipRelief, missing_material
+from siggen.gears.missing_material import CORNER_REACH_PITCHES, missing_material
 from tests.dynamics.pair_runs import RELIEF, gear_pair
 
 
@@ -27,9 +27,3 @@ def test_beyond_the_path_of_contact_the_corner_gap_adds_to_the_relief_of_the_tip
     assert relieved.pinion.profile_m[0, -1] == pytest.approx(plain.pinion.profile_m[0, -1] + RELIEF.amount_m, rel=1e-12)
     # Deeper than any approach of teeth that are not overloaded many times: 30 N m deflect them by 6 µm.
     assert min(plain.gear.profile_m[0, 0], plain.pinion.profile_m[0, -1]) > 35e-6
-
-
-@pytest.mark.parametrize("relief", [TipRelief(-1e-6, 1e-3), TipRelief(1e-6, 0.0), TipRelief(1e-6, 1e-2)])
-def test_impossible_reliefs_are_refused(relief: TipRelief) -> None:
-    with pytest.raises(ValueError, match="allowed are amounts from 0"):
-        missing_material(gear_pair(), relief)

@@ -113,7 +113,7 @@ def test_the_loss_of_damage_through_the_face_is_known_with_coupling_where_two_pa
 @pytest.mark.parametrize(("pair", "damage"), [(PAIR, DAMAGE), (tall_pair(), ())], ids=["18/47 damaged", "tall"])
 def test_contributions_add_up_to_the_mesh_stiffness_and_never_jump(pair, damage):
     tables = mesh_tables(pair, damage, BODY, points=65)
-    kinds = pair_kinds(pair, damage)
+    kinds = pair_kinds(damage)
     runs, row_of_pair = neighbour_runs(pair, tables.table_of_pair)
     assert not runs[0].any()
     angle = np.linspace(0.0, 2.5, 301)
@@ -143,16 +143,9 @@ def test_largest_loss_is_that_of_the_coupled_curve():
     assert loss.max() > 0.98 * found
 
 
-def test_coupling_needs_the_body_that_it_goes_through():
-    with pytest.raises(ValueError, match="coupling 'body' with foundation 'none'"):
-        StiffnessOptions("base_circle", "none", coupling="body")
-    with pytest.raises(ValueError, match="coupling 'rigid'"):
-        StiffnessOptions(coupling="rigid")
-
-
 def test_gears_outside_the_fit_are_named():
     thin = bare(pair_18_47(bores_m=(25.0e-3, 20e-3)))
-    options = StiffnessOptions("rack_trochoid", foundation_angle="profile", coupling="body")
+    options = StiffnessOptions("rack_trochoid", coupling="body")
     notes = stiffness_notes(thin, options)
     assert any("coupling: h_f = root radius / held radius is 1.085; fitted range 1.4 to 7" in note for note in notes)
     assert not any("coupling" in note for note in stiffness_notes(PAIR, options))

@@ -43,7 +43,7 @@ def rolls(gear, places):
 
 def model(gear, roll):
     pair = GearPair(gear, gear, 1.0, 1.0, 0.3)
-    options = StiffnessOptions(beam="rack_trochoid", foundation="sainsot", foundation_angle="rack")
+    options = StiffnessOptions(beam="rack_trochoid")
     return tooth_compliance(pair, "pinion", roll, options).total
 
 

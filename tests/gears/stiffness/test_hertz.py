@@ -85,20 +85,3 @@ def test_parts_of_a_pair_add_up_to_its_compliance():
     position = np.linspace(pair.contact_start_m, pair.contact_end_m, 9)
     parts = pair_compliance(pair, position, StiffnessOptions(), layers(1, 4))
     np.testing.assert_array_equal(1 / parts.total, pair_stiffness(pair, position, StiffnessOptions(), layers(1, 4)))
-
-
-@pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        ({"hertz": "weber_banaschek"}, "hertz_force_n None"),
-        ({"hertz": "weber_banaschek", "hertz_force_n": 0.0}, "above 0 N"),
-        ({"hertz": "weber_banaschek", "hertz_force_n": float("nan")}, "above 0 N"),
-        ({"hertz_force_n": 100.0}, "'linear'"),
-        ({"hertz": "hertzian"}, "weber_banaschek"),
-        ({"foundation": "none"}, "calibrated"),
-        ({"foundation_angle": "profile"}, "calibrated"),
-    ],
-)
-def test_options_that_mean_nothing_together_are_refused(wrong, message):
-    with pytest.raises(ValueError, match=message):
-        StiffnessOptions(**wrong)

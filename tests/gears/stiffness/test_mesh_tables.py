@@ -92,10 +92,3 @@ def test_largest_loss_is_the_maximum_over_the_whole_hunting_period():
     # The hunting period is sampled every 0.0007 rad, 25 um on a pit of 400 um: within (25/2/200)^2/2 of the peak.
     assert sampled <= largest * (1 + 1e-9)
     assert sampled == pytest.approx(largest, rel=4e-3)
-
-
-def test_bad_tables_are_refused():
-    with pytest.raises(ValueError, match="at least 2"):
-        mesh_tables(PAIR, (), TROCHOID, points=1)
-    with pytest.raises(ValueError, match="0 to 17"):
-        mesh_tables(PAIR, (pit(tooth=18),), TROCHOID)
