@@ -21,17 +21,9 @@ def chosen_record(source: Path, record: int, overrides: Sequence[str]) -> tuple[
         If it has no such record.
     """
     from siggen.checks.loading import load_config
-    from siggen.errors import UsageError, counted
-    from siggen.gearbox.plan import planned_record, record_ids_of
+    from siggen.gearbox.plan import expect_record, planned_record
 
     design = load_config(source / "config.yaml" if source.is_dir() else source, overrides)
-    count = design.specimens * design.records_per_specimen
-    if record >= count:
-        raise UsageError(f"--record {record}: {source} has {counted(count, 'record')}, 0 to {count - 1}")
-    if record not in (ids := record_ids_of(design, record // design.records_per_specimen)):
-        raise UsageError(
-            f"--record {record}: this gearbox fails, or is taken out, before; allowed: {ids[0]} to {ids[-1]}, or those "
-            "of another one"
-        )
+    expect_record(design, record, "--record")
     planned = planned_record(design, record)
     return design, design.gearbox(planned.specimen_id), planned

@@ -11,11 +11,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import chain, pairwise
+from numbers import Integral
 from typing import overload
 
 from siggen.config.config import MOST_REPEATS
+from siggen.errors import UsageError
 from siggen.gearbox.channels import sensors_of
 from siggen.gearbox.design import SetDesign, expect_design
+from siggen.keys.problems import received_text
 from siggen.seeding import Stream, generator
 from siggen.sensors.converter import FROM_NOISE
 from siggen.sensors.sensor import SensorBase
@@ -161,6 +164,18 @@ def planned_record(design: SetDesign, record_id: int) -> PlannedRecord:
     specimen_id, state_id = divmod(rest, design.state_count)
     split = split_of(design, specimen_id)
     return PlannedRecord(record_id, specimen_id, state_id, operating_point_id, repeat, split)
+
+
+def expect_record(design: SetDesign, record_id: int, called: str) -> None:
+    """Refuse the number of a record that a set does not hold, in the words of whoever was asked for it."""
+    of_each, last = design.records_per_specimen, design.specimens * design.records_per_specimen - 1
+    if not isinstance(record_id, Integral) or not 0 <= record_id <= last:
+        raise UsageError(f"{called}: received {received_text(record_id)}; allowed: a whole number from 0 to {last}")
+    if record_id not in (ids := record_ids_of(design, record_id // of_each)):
+        raise UsageError(
+            f"{called}: received {record_id}, but this gearbox fails, or is taken out, before; allowed: {ids[0]} to "
+            f"{ids[-1]}, or those of another one"
+        )
 
 
 def record_ids_of(design: SetDesign, specimen_id: int) -> range:

@@ -10,6 +10,7 @@ import pyarrow as pa
 
 from siggen.columns.record import ChannelColumn, RecordFailure, damage_schema, label_schema, record_schema
 from siggen.gearbox.design import SetDesign, expect_design
+from siggen.gearbox.plan import expect_record
 from siggen.sets import physics as contents
 from siggen.sets.verification import OneRecord
 from siggen.workers.choice import workers_of
@@ -54,11 +55,13 @@ def simulate_records(design: SetDesign, record_ids: Sequence[int], workers: int 
     Raises
     ------
     UsageError
-        If the design is none.
+        If the design is none, or has no record of such a number.
     EngineError
         If a simulation raised.
     """
     expect_design(design)
+    for record_id in record_ids:
+        expect_record(design, record_id, "record_ids")
     physics = contents.physics()
     simulation = physics.simulation(design)
     tasks = [OneRecord((record_id,)) for record_id in record_ids]

@@ -41,7 +41,7 @@ def test_the_table_holds_the_stored_signal_and_what_no_sensor_sees(tmp_path: Pat
 
 
 def test_a_record_that_the_set_does_not_have_is_refused_with_the_range(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="has 8 records, 0 to 7"):
+    with pytest.raises(UsageError, match="--record: received 8; allowed: a whole number from 0 to 7"):
         run("tests/configs/linear_pits.yaml", "--record", 8, "--out", tmp_path / "record.parquet")
 
 
