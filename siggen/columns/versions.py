@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-SCHEMA_VERSION = "7"
+SCHEMA_VERSION = "8"
 """Version of the columns and of the files around them: the one that is written and read."""
 
 SIMULATION_VERSION = 11

@@ -16,7 +16,6 @@ from siggen.config.machine import drivetrain
 from siggen.errors import Problem
 from siggen.keys.distributions import DRAWN, Changed
 from siggen.keys.distributions import WORDS as WORDS_OF_NUMBERS
-from siggen.keys.former_keys import former_key
 from siggen.keys.number import Each, Number, Within, at, each_of
 from siggen.keys.problems import (
     joined,
@@ -132,7 +131,7 @@ def changed_sections(sections: Mapping[str, Any], changes: Sequence[Change]) -> 
         if not below or not one.path.startswith(tuple(f"{key}." for key in known)):
             near = nearest(one.path, _paths(sections)) if name not in sections else ""
             allowed = f"allowed: keys below {', '.join(known)}; all else is the same in all states{near}"
-            raise _refused(one, former_key(name) or allowed)
+            raise _refused(one, allowed)
         if one.path.startswith(MADE):
             raise _refused(one, "allowed: sizes that follow from it, such as those of dynamics.pinion.bearing.geometry")
         if machine is not None and name == "dynamics" and below[0] in tuple(Side):

@@ -50,7 +50,8 @@ def manifest_facts(name: str, stored: bytes) -> Inventory:
     if isinstance(version, str) and version != SCHEMA_VERSION:
         raise DatasetError(
             f"{name}: received schema version {version[:20]}; allowed is {SCHEMA_VERSION}. Another version of siggen "
-            "wrote the set: open it with that version, or generate it again from its config.yaml into a new folder"
+            "wrote the set: open it with that version, or generate it again from its config.yaml into a new folder, "
+            "without keys that are gone since"
         )
     facts = _typed(name, stored)
     _refuse(name, list(_unfit(facts)))

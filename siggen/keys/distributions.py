@@ -242,8 +242,6 @@ def distribution(value: Mapping[Any, Any] | Sequence[Any]) -> Distribution:
     """Return the distribution that a file writes as a list of two numbers or as a mapping, or raise a refusal."""
     if not isinstance(value, Mapping):
         return _made(Uniform, ("low", "high"), [value], "", Uniform.form)
-    if isinstance(kind := value.get("kind"), str):
-        raise refusal([Problem("", written_text(value), _new_form(kind, value))])
     words = tuple(sorted(str(key) for key in value))
     if words in BY_WORDS:
         model, fields = BY_WORDS[words]
@@ -278,18 +276,6 @@ def is_finite(value: object) -> bool:
 
 def _received(numbers: object) -> str:
     return received_text(numbers) if not isinstance(numbers, (list, tuple)) else written_text(numbers)
-
-
-def _new_form(kind: str, value: Mapping[Any, Any]) -> str:
-    """Return how to write what a mapping with a `kind` means, with its own numbers."""
-    low, high, mean, std = (value.get(key, key) for key in ("low", "high", "mean", "std"))
-    forms: dict[str, Any] = {
-        "uniform": [low, high],
-        "loguniform": {"log": [low, high]},
-        "normal": {"normal": [mean, std], "within": [low, high]},
-        "choice": {"one_of": value.get("values", ["a", "b"])},
-    }
-    return f"write {written_text(forms[kind])}" if kind in forms else f"allowed: {', '.join(FORMS)}"
 
 
 def written_text(value: Any) -> str:

@@ -11,7 +11,6 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from siggen.errors import Problem, counted
-from siggen.keys.former_keys import former_key
 from siggen.keys.wording import allowed_text, keys_of, models_in, words_in
 
 REFUSAL = "refusal"
@@ -119,8 +118,6 @@ def _unknown_key(path: str, value: object, known: Sequence[str]) -> Problem:
     """Return the problem of a key that does not exist at its place."""
     path = _short_path(path)
     key = path.rpartition(".")[2]
-    if now := former_key(path):
-        return Problem(path, received_text(value), now)
     hint = nearest(key, known) or ";"
     return Problem(path, received_text(value), f"there is no such key here{hint} known keys: {', '.join(known)}")
 

@@ -36,10 +36,6 @@ WRONG: dict[str, tuple[str, Any, str, dict[str, Any]]] = {
         "machine.shafts.output.eccentricity_um", 5.0, "received 5.0; allowed: none on a shaft behind the second",
         {"manufacture": {"accuracy_class": 6}},
     ),
-    "a key of former files": (
-        "manufacture.crowning_gear_um", 3.0, "write crowning_driven_um", {"manufacture": {"accuracy_class": 6}},
-    ),
-    "a section of former files": ("stages.0.gear.mass_kg", 3.0, "write machine: with shafts", {}),
     "a stiffness that balls stand in place of": (
         "machine.shafts.input.bearing.stiffness_n_per_m", {"times": 0.5},
         "received a key that machine.shafts.input.bearing.geometry stands in place of; "

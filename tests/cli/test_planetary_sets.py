@@ -149,7 +149,6 @@ def test_pins_out_of_place_bring_back_all_orders(tmp_path: Path) -> None:
         ({"planetary": {"ring_teeth": 77, "positions_deg": [0, 90, 180, 270]}}, "planetary.positions_deg", "360/102"),
         ({"planetary": {"ring_teeth": 77, "positions_deg": [0, 180]}}, "planetary.positions_deg", "3 to 5"),
         ({"dynamics": {"friction": {"model": "off"}}}, "housing.kind", "rigid or modal"),
-        ({"stages": []}, "stages", "write machine"),
         ({"background": {"second_stage": {"order": 20.0}}}, "background.second_stage", "auxiliary_drive"),
         ({"background": {"base": {}}}, "background.base", "dynamics.model: casing"),
         ({**HOUSED, "sensors": {"b": {"place": "lid"}}}, "sensors.b.place", "casing, ring"),

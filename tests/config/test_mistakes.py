@@ -216,21 +216,6 @@ MISTAKES = [
     ),
     ({"gears__module_mm": {"one_of": [1, "a"]}}, "gears.module_mm.one_of", "[1, a]", "{one_of: [a, b]}"),
     ({"gears__module_mm": {"one_of": []}}, "gears.module_mm.one_of", "[]", "{one_of: [a, b]}"),
-    # distributions of earlier versions
-    ({"gears__module_mm": {"kind": "uniform", "low": 3, "high": 4}}, "gears.module_mm", "kind: uniform", "[3, 4]"),
-    ({"gears__module_mm": {"kind": "loguniform", "low": 3}}, "gears.module_mm", "{kind: ", "write {log: [3, high]}"),
-    (
-        {"gears__module_mm": {"kind": "normal", "mean": 3, "std": 0.1, "low": 2, "high": 4}},
-        "gears.module_mm",
-        "{kind: normal, mean: 3, std: 0.1, low: 2, high: 4}",
-        "write {normal: [3, 0.1], within: [2, 4]}",
-    ),
-    (
-        {"states__slight__damage__teeth": {"kind": "choice", "values": [1, 2]}},
-        "states.slight.damage.teeth",
-        "kind",
-        "[1, 2]}",
-    ),
     # numbers for each of several things
     ({"sensors__bearing__gain": [1, -1]}, "sensors.bearing.gain", "[1, -1]", "the low number first"),
     ({"sensors__bearing__gain": {"each": [1, -1]}}, "sensors.bearing.gain.each.1", "-1.0", "above 0"),
@@ -301,8 +286,6 @@ MISTAKES = [
         "one of them",
     ),
     ({"states__again": {"grows": "healthy"}}, "states.again.grows", "'healthy', without damage", "allowed: like"),
-    ({"states__slight__grows_from": "none"}, "states.slight.grows_from", "'none'", "write grows: NAME"),
-    ({"states__slight__sham": True}, "states.slight.sham", "true", "write acts: false"),
     (
         {"sensors__bearing__axes": ["vertical", "vertical"]},
         "sensors.bearing.axes",
