@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from siggen.cli.echo import echo
 from siggen.cli.json_output import AsJson, echo_json
 from siggen.cli.life_table import cost_summary, cost_text, history_text, life_doubts, life_summary, life_table
 from siggen.cli.working import working
@@ -98,10 +99,15 @@ def _tried(design: SetDesign, gearboxes: int | None) -> SetTrial | None:
     """Return what short records of some gearboxes lose; a line on stderr tells how far it is."""
     from siggen.cli.working import stepwise
     from siggen.sets import trial
+    from siggen.sets.compilation import compilation_text
 
     if gearboxes == 0:
         return None
-    with stepwise("trying short records (--trial 0 leaves this out)") as progress:
+    what = "trying short records (--trial 0 leaves this out)"
+    if text := compilation_text(design.method, 1):
+        echo(text, err=True)
+        what = f"compiling, the first time, and {what}"
+    with stepwise(what) as progress:
         return trial.trial(design, gearboxes, progress)
 
 

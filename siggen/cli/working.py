@@ -87,7 +87,9 @@ def stepwise(what: str, steps: int | None = None) -> Iterator[Callable[[int, int
             nonlocal far
             far = done, total
 
-        with ticking(lambda passed_s: f"{what}: {far[0]} of {far[1]}, {passed_s:.0f} s"):
+        with ticking(
+            lambda passed_s: f"{what}: " + (f"{far[0]} of {far[1]}, " if far[1] else "") + f"{passed_s:.0f} s"
+        ):
             yield note
         return
     columns = (TextColumn("{task.description:<28}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())

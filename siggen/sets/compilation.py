@@ -16,4 +16,4 @@ def compilation_text(method: str, workers: int) -> str:
         return ""
     wait_s = COMPILED_S * (LARGER_SHARE if workers > 1 else 1.0)
     machine = f"about {wait_s:.0f} s on an idle machine"
-    return f"compiling the simulation once, for all workers: {machine} before the first record"
+    return f"compiling the simulation, the first time only: {machine} before the first record"

@@ -1,13 +1,16 @@
-"""CPU time of a set, by proportion from a few short records."""
+"""CPU time of a set, by proportion from a few short records, without what numba compiles or loads for them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from statistics import mean
 from typing import TYPE_CHECKING
 
-from siggen.record.stage_times import collected
+from numba.core.event import Event, Listener, install_listener
+
+from siggen.record.stage_times import collected, stage
 
 if TYPE_CHECKING:
     from siggen.columns.record import RecordFailure, SimulatedRecord
@@ -17,7 +20,7 @@ if TYPE_CHECKING:
 START_S = 0.9
 """Seconds of signal that cost as much as finding the step and settling do: 0.9 to 1.3 in three gearboxes of quickstart,
 0.8 in planetary, by records of 0.25 to 0.35 s and of 0.85 to 1.5 s."""
-PREPARING = ("plan", "tables")
+PREPARING, COMPILING = ("plan", "tables"), "compiling"
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,14 +62,29 @@ class SetCost:
 def timed(results: Iterator[Result], times: list[RecordTime]) -> Iterator[Result]:
     """Yield results of a simulation, with the time of each added to a list."""
     while True:
-        with collected("rest") as found:
+        with collected("rest") as found, install_listener("numba:compiler_lock", _Compiling()):
             result = next(results, None)
         if result is None:
             return
         prepared_s = sum(found.seconds.get(name, 0.0) for name in PREPARING)
         fault = getattr(result, "labels", {}).get("fault", "healthy")
-        times.append(RecordTime(prepared_s, sum(found.seconds.values()) - prepared_s, fault != "healthy"))
+        run_s = sum(found.seconds.values()) - prepared_s - found.seconds.get(COMPILING, 0.0)
+        times.append(RecordTime(prepared_s, run_s, fault != "healthy"))
         yield result
+
+
+class _Compiling(Listener):
+    """Charges a stage of its own while numba compiles, or loads what it has compiled before."""
+
+    def __init__(self) -> None:
+        self._open: list[ExitStack] = []
+
+    def on_start(self, event: Event) -> None:  # noqa: ARG002 - as every listener
+        self._open.append(ExitStack())
+        self._open[-1].enter_context(stage(COMPILING))
+
+    def on_end(self, event: Event) -> None:  # noqa: ARG002
+        self._open.pop().close()
 
 
 def set_cost(times: Sequence[RecordTime], fresh: int, duration_s: float) -> SetCost:

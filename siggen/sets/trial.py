@@ -116,7 +116,7 @@ def trial(
         Of which every state is tried, at most as many as the set has; with several operating points each gearbox runs
         at one of them in turn. By default `RECORDS` records.
     progress : callable, optional
-        Called with (records done, records of the trial).
+        Called with (records done, records of the trial), first before any record.
     """
     short, physics = design.shortened(TURNS), contents.physics()
     meshes = _meshes(design)
@@ -124,6 +124,9 @@ def trial(
     found: dict[str, list[SimulatedRecord | RecordFailure]] = {name: [] for name in design.state_names}
     times: list[RecordTime] = []
     fresh = 0  # place of the second gearbox's first record
+    count = sum(len(picked) for _, picked in sample)
+    if progress is not None:
+        progress(0, count)
     for specimen, picked in sample:
         fresh = fresh or len(times)
         ids = _record_ids(short, specimen)  # a gearbox may fail before its last inspection
@@ -131,15 +134,15 @@ def trial(
         results = iter(physics.simulate(short, [ids[i] for i in places]))
         for i, result in zip(places, timed(results, times), strict=True):
             if progress is not None:
-                progress(len(times) - 1, sum(len(picked) for _, picked in sample))
+                progress(len(times), count)
             found[design.state_names[i]].append(result)
-    count = 0 if design.lives else min(max(1, SIZES // (meshes * design.state_count)), design.specimens)
-    sizes = [physics.damage_sizes(design, specimen) for specimen in range(count)]
+    sized = 0 if design.lives else min(max(1, SIZES // (meshes * design.state_count)), design.specimens)
+    sizes = [physics.damage_sizes(design, specimen) for specimen in range(sized)]
     states = tuple(
         _state_trial(name, results, [one[name] for one in sizes if name in one]) for name, results in found.items()
     )
     cost = set_cost(times, fresh, short.duration_s)
-    return SetTrial(tuple(one for one in states if one.tried or count), count, cost)
+    return SetTrial(tuple(one for one in states if one.tried or sized), sized, cost)
 
 
 def _meshes(design: SetDesign) -> int:

@@ -56,7 +56,7 @@ def test_an_empty_cache_is_told_and_a_filled_one_is_not(short: SetDesign, monkey
     assert (compilation_text(short.method, 2), to_compile(short)) == ("", ())
     older = SimpleNamespace(_cache=SimpleNamespace(_cache_file=SimpleNamespace(_load_index=dict)))
     monkeypatch.setattr(exponential_step, "advance", older)
-    assert "compiling the simulation once, for all workers: about 30 s" in compilation_text(short.method, 2)
+    assert "compiling the simulation, the first time only: about 30 s" in compilation_text(short.method, 2)
     assert [part.name for part in to_compile(short)] == [compilation.TEETH, compilation.MOTION]
 
 

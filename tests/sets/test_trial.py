@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from unittest.mock import patch
+
 import pytest
+from numba.core.event import trigger_event
 
 from siggen.checks.loading import load_config
 from siggen.gearbox.plan import planned_record
-from siggen.sets.record_cost import START_S, RecordTime, SetCost, set_cost
+from siggen.sets.record_cost import START_S, RecordTime, SetCost, set_cost, timed
 from siggen.sets.trial import RECORDS, TURNS, StateTrial, trial
 from tests.config.mill import mill
 from tests.config.minimal import by_name, design
@@ -27,7 +30,7 @@ def test_a_trial_says_which_states_lose_records_and_why() -> None:
         found = trial(fake_config(), 99).states
     assert [(state.lost, state.tried) for state in found] == [(5, 5)] * 3
     assert found[0].reason == "diverged (always)"
-    assert told == [(i, 6) for i in range(6)]
+    assert told == [(i, 6) for i in range(7)]
 
 
 def test_the_interval_is_wilsons() -> None:
@@ -74,6 +77,26 @@ def test_a_set_costs_by_its_gearboxes_damaged_states_and_seconds_of_signal() -> 
     assert cost.hours(10, 20, 30, 2.0) * 3600 == pytest.approx(10 * 1.0 + 20 * 0.5 + 30 * (START_S + 2.0))
     alone = set_cost(times[:1], 0, 1.0)
     assert (alone.gearbox_s, alone.damage_s, alone.signal_s) == (6.0, 6.0, pytest.approx(3.0 / (1.0 + START_S)))
+
+
+def test_what_numba_compiles_or_loads_costs_no_record_anything() -> None:
+    now_s = 0.0
+
+    def simulate():
+        nonlocal now_s
+        for compiled_s in (30.0, 0.0):
+            now_s += 1.0
+            with trigger_event("numba:compiler_lock"):
+                now_s += compiled_s
+                with trigger_event("numba:compiler_lock"):  # of what the function calls
+                    now_s += compiled_s
+            now_s += 0.5
+            yield object()
+
+    times: list[RecordTime] = []
+    with patch("time.thread_time", lambda: now_s):
+        assert len(list(timed(simulate(), times))) == 2
+    assert times == [RecordTime(0.0, 1.5, damaged=False)] * 2
 
 
 @pytest.mark.parametrize(
