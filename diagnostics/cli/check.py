@@ -35,8 +35,8 @@ def check(
 ) -> None:
     """Say of every recording: unchanged, changed, other load or speed, or cannot tell. No fault is named.
 
-    Writes a page with the trend into the machine's folder. Exit codes: 0 nothing has changed, 4 something has, 2 a file
-    cannot be read.
+    Writes a page with the trend into the machine's folder. Exit codes: 0 all are unchanged, 4 something has changed, 2
+    a file cannot be read, 3 a recording cannot be compared.
 
     Example: siggen-diagnostics check rig august.csv september.csv
     """
@@ -45,6 +45,7 @@ def check(
     from diagnostics.machine.check import (
         CANNOT_TELL,
         CHANGED,
+        UNCHANGED,
         check_recording,
         load_sentence,
         past_checks,
@@ -56,7 +57,7 @@ def check(
     from diagnostics.machine.machine_page import write_machine_page
     from diagnostics.recordings.channel_factor import UNKNOWN_UNIT
     from diagnostics.recordings.measured_recording import read_recording
-    from siggen.errors import EXIT_MISMATCH, EXIT_USAGE, UsageError
+    from siggen.errors import EXIT_MISMATCH, EXIT_OK, EXIT_RECORDS_FAILED, EXIT_USAGE, UsageError
 
     require_packages("the page of a machine", "matplotlib")
     known = load_machine(machine)
@@ -76,10 +77,10 @@ def check(
             try:
                 results.append(check_recording(known, read_recording(path, known.channels, facts), name, load))
             except UsageError as error:
-                unread[name] = _in_words_of_check(str(error), machine)
+                unread[name] = _in_words_of_check(str(error).removeprefix(f"{path}: "), machine)
             advance()
     if unread and not results:
-        raise UsageError("\n".join(unread.values()))
+        raise UsageError("\n".join(f"{name}: {reason}" for name, reason in unread.items()))
     history = with_checks(past_checks(machine), results)
     if as_json:
         echo_json({"machine": str(machine), "checks": [asdict(result) for result in results], "refused": unread})
@@ -96,10 +97,9 @@ def check(
     page = write_machine_page(known, machine, results, history)
     write_history(machine, history)  # last: a call that fails and is given again is in it once
     echo(str(page), err=as_json)
-    if any(result.verdict == CHANGED for result in results):
-        raise typer.Exit(EXIT_MISMATCH)
-    if unread:
-        raise typer.Exit(EXIT_USAGE)
+    verdicts = {result.verdict for result in results}
+    without_change = EXIT_USAGE if unread else EXIT_OK if verdicts == {UNCHANGED} else EXIT_RECORDS_FAILED
+    raise typer.Exit(EXIT_MISMATCH if CHANGED in verdicts else without_change)
 
 
 def _in_words_of_check(message: str, machine: Path) -> str:

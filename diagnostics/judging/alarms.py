@@ -439,9 +439,12 @@ def evaluate(
         )
     taken = healthy_referenced(data)[0] if beside else replace(data, values=data.values if values is None else values)
     if too_few(taken):
+        damaged = taken.labels["fault"] != HEALTHY
+        healthy_of, damaged_of = (np.unique(taken.groups[rows]).size for rows in (~damaged, damaged))
         raise UsageError(
-            f"evaluate: received too few gearboxes; allowed: {FEWEST_SPECIMENS} or more with healthy records, and as "
-            f"many with damaged ones{', each beside another healthy one' if beside else ''}"
+            f"evaluate: received {counted(healthy_of, 'gearbox', 'gearboxes')} with healthy records, {damaged_of} with "
+            f"damaged ones; allowed: {FEWEST_SPECIMENS} or more{', each beside another healthy one' * beside}. "
+            "Make more: `siggen generate DIR/config.yaml --set specimens=12 --out DIR`"
         )
     entry = Entry(type(model).__name__, lambda: Odds(deepcopy(model)), taken.values, np.ones(len(taken.values), bool))
     damaged, fold = taken.labels["fault"] != HEALTHY, DESIGN.dealt(taken.groups, seed)[0]

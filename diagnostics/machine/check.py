@@ -22,6 +22,7 @@ from diagnostics.machine.healthy_state import pieces_of
 from diagnostics.machine.machine import CHECKS, Machine
 from diagnostics.page.sentences import Sentences
 from diagnostics.prediction.record_pieces import RecordPieces
+from diagnostics.recordings.in_rig import in_rig
 from diagnostics.recordings.level_alike import MOST_DB
 from diagnostics.recordings.measured_recording import MeasuredRecording
 from diagnostics.records.gear_train import gear_names
@@ -147,15 +148,38 @@ def check_recording(machine: Machine, recording: MeasuredRecording, name: str, l
         What the recording is called.
     load : float, optional
         As the references' loads were given.
+
+    Raises
+    ------
+    UsageError
+        If its sampling rate and its tacho say that the rate is wrong.
     """
+    _refuse_other_rate(machine, recording)
     try:
         if recording.duration_s < 0.9 * machine.duration_s:
             told = f"{recording.duration_s:.3g} s; pieces of the references are {machine.duration_s:.3g} s long"
-            raise UsageError(f"{recording.path}: is too short: {told}")
+            raise UsageError(f"too short: {told}")
         pieces, pulses = pieces_of(recording, machine.fs_hz, machine.train, machine.speed_range_hz, machine.duration_s)
     except UsageError as error:
-        return Check(name, CANNOT_TELL, str(error), float("nan"))
+        reason = str(error).removeprefix(f"{recording.path}: ")
+        if recording.fs_hz > machine.fs_hz:
+            reason += f" It was sampled at {recording.fs_hz:g} Hz, the references at {machine.fs_hz:g} Hz."
+        return Check(name, CANNOT_TELL, reason, float("nan"))
     return replace(_compared(machine, pieces, pulses.speed_hz, name, load), angle=pulses.origin)
+
+
+def _refuse_other_rate(machine: Machine, recording: MeasuredRecording) -> None:
+    """Refuse a rate with which a tacho turns as far from the references as the rate is from theirs."""
+    if (hz := recording.tacho_hz) is None:
+        return
+    low, high = machine.speed_hz.min() / SPEED_RATIO, machine.speed_hz.max() * SPEED_RATIO
+    if not low <= hz <= high and low <= hz * machine.fs_hz / recording.fs_hz <= high:
+        shaft = gear_names(machine.train)[0].gears[0]
+        raise UsageError(
+            f"{recording.path}: {recording.fs_hz:g} Hz; the references {machine.fs_hz:g} Hz, their {shaft} "
+            f"{machine.speed_hz.min():.4g} to {machine.speed_hz.max():.4g} Hz, this one {hz:.4g}. Correct the rate: "
+            f"{in_rig(f'fs_hz: {machine.fs_hz:g}')}"
+        )
 
 
 def _compared(machine: Machine, pieces: RecordPieces, speed_hz: float, name: str, load: float | None) -> Check:

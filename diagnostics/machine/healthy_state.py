@@ -159,7 +159,7 @@ def healthy_state(
         try:
             read[k] = read_recording(path, channels, replace(facts, row=row))
         except UsageError as error:
-            refused[called[k]] = str(error)
+            refused[called[k]] = str(error).removeprefix(f"{path}: ")
     _enough(len(read), refused)
     _refuse_twice(tuple(read.values()))
     check_levels_alike(tuple(read.values()))
@@ -172,7 +172,7 @@ def healthy_state(
             check_mesh_lines(recording, pulses, train)
             rows[k] = pieces, pulses
         except UsageError as error:
-            refused[called[k]] = str(error)
+            refused[called[k]] = str(error).removeprefix(f"{recording.path}: ")
         advance()
     _enough(len(rows), refused)
     kept = list(rows)
@@ -211,7 +211,7 @@ def first_readable(sources: Sequence[Source], facts: RecordingFacts) -> TakenRec
 def _enough(usable: int, refused: Mapping[str, str]) -> None:
     if usable < FEWEST:
         count = f"{counted(usable, 'healthy recording')}; {FEWEST} are needed, 19 for a rate of false alarms of 5 %"
-        raise UsageError("\n".join([*refused.values(), count]))
+        raise UsageError("\n".join([*(f"{name}: {reason}" for name, reason in refused.items()), count]))
 
 
 def thin_sentence(machine: Machine) -> str:

@@ -79,6 +79,14 @@ class MeasuredRecording:
         """Length of the recording."""
         return next(iter(self.channels.values())).size / self.fs_hz
 
+    @property
+    def tacho_hz(self) -> float | None:
+        """Mean rate of the tacho's turns; None without two of them."""
+        times_s = self.tacho_s
+        if times_s is None or times_s.size < 2:
+            return None
+        return float((times_s.size - 1) / (times_s[-1] - times_s[0]))
+
     def shown_unit(self, channel: str) -> str:
         """Return the unit of a channel as pages and pictures show it."""
         unit = self.units.get(channel, ACCELERATION_UNIT)

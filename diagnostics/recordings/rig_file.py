@@ -106,7 +106,9 @@ class _Key:
 KEYS = {
     "teeth": _Key(_listed, "two whole numbers, or a configuration", "25,56", "of pinion and gear, or gearbox.yaml"),
     "fs_hz": _Key(_number, "a rate [Hz]", "25600", "where the file does not state it", "fs_hz"),
-    "speed": _Key(_listed, "a range or a speed", "14,26", "of the first shaft [Hz], or 1780rpm; with a tacho needless"),
+    "speed": _Key(
+        _listed, "a range or a speed", "14,26", "of the first shaft [Hz], or 1780rpm; beside tacho a control"
+    ),
     "channels": _Key(_columns, "columns by names of channels", "{lid: ch1}", "name: column, or its place", "columns"),
     "unit": _Key(_text, "a unit", "g", "m/s2, g, mg, mV, V or another, where no column states it", "unit"),
     "sensitivity_mv_per_g": _Key(_number, "a number", "100", "for mV and V", "sensitivity_mv_per_g"),

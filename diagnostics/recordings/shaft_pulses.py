@@ -95,10 +95,11 @@ def shaft_pulses(
     elif recording.tacho_s is not None:
         found = ShaftPulses(recording.tacho_s)
         low, high = speed_range_hz or (0.0, np.inf)
-        if recording.tacho_s.size > 1 and not low <= found.speed_hz <= high:
+        if recording.tacho_hz is not None and not low <= recording.tacho_hz <= high:
             raise UsageError(
-                f"{recording.path}: the tacho gives {found.speed_hz:.4g} Hz of the first shaft, outside of {low:g} to "
-                f"{high:g} Hz. Is it on this shaft, with as many pulses per turn (`tacho_pulses` of the rig file)?"
+                f"{recording.path}: the tacho gives {recording.tacho_hz:.4g} Hz of the first shaft, outside of {low:g} "
+                f"to {high:g} Hz. Is it on this shaft, with as many pulses per turn (`tacho_pulses` of the rig file), "
+                f"and is the sampling rate right, {recording.fs_hz:g} Hz (`fs_hz`)?"
             )
     elif (span := speed_range_hz or recording.speed_span_hz) is None:
         raise UsageError(

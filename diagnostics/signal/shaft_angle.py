@@ -183,7 +183,7 @@ def shaft_angle(
         kind = "curve" if abs(hz / found.speed_hz - 1.0) < SAME_SPEED else "speed"
         if kind not in others or behind < others[kind].behind:
             others[kind] = Rival(f"another course of {hz:.4g} Hz", behind)
-    return _judged(replace(found, others=others), limits_hz)
+    return _judged(replace(found, others=others), limits_hz, fs_hz)
 
 
 def checked_limits(limits_hz: tuple[float, float]) -> None:
@@ -199,7 +199,7 @@ def checked_limits(limits_hz: tuple[float, float]) -> None:
         raise UsageError(f"speed range: received {low:g} to {high:g} Hz; allowed is 0 < low < high")
 
 
-def _judged(found: ShaftAngle, limits_hz: tuple[float, float]) -> ShaftAngle:
+def _judged(found: ShaftAngle, limits_hz: tuple[float, float], fs_hz: float) -> ShaftAngle:
     """Return what is given of an angle.
 
     Raises
@@ -208,25 +208,26 @@ def _judged(found: ShaftAngle, limits_hz: tuple[float, float]) -> ShaftAngle:
         If not even its speed is.
     """
     low, high = limits_hz
+    rate = f"the sampling rate ({fs_hz:g} Hz as said)"
     stated, speed = f"{found.teeth[0]}/{found.teeth[1]} teeth", f"{found.speed_hz:.4g} Hz"
     if found.nats < LEAST_FIT:
         raise UsageError(
             f"no lines of {stated} stand above the noise within {low:g} to {high:g} Hz of the first shaft (best "
-            f"{speed}, {found.nats:.0f} nats; allowed is {LEAST_FIT:g}). Check range and teeth, give a longer "
-            "recording or a tacho."
+            f"{speed}, {found.nats:.0f} nats; allowed is {LEAST_FIT:g}). Check range, teeth and {rate}, give a "
+            "longer recording or a tacho."
         )
     outside = found.others.get("outside")
     if outside and -outside.behind > MOST_BEHIND:
         raise UsageError(
             f"the lines fit {outside.name} of the first shaft best, {-outside.behind:.0f} nats ahead of {speed}, "
-            f"outside of {low:g} to {high:g} Hz. Check range and teeth, or give a tacho."
+            f"outside of {low:g} to {high:g} Hz. Check range, teeth and {rate}, or give a tacho."
         )
     for kind, most in (("mesh", MOST_BEHIND), ("pinion", MOST_BEHIND), ("gear", MOST_BEHIND_GEAR)):
         other = found.others.get(kind)
         if other and -other.behind > most:
             raise UsageError(
                 f"the lines fit {other.name} teeth better than {stated}, by {-other.behind:.0f} nats at {speed}. Check "
-                "teeth and range."
+                f"teeth, range and {rate}."
             )
     nearest = found.others.get("speed")
     if nearest and nearest.behind < LEAST_AHEAD:

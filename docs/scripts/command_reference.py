@@ -35,7 +35,8 @@ exit code|meaning
 0|done
 1|unexpected error; run again with `SIGGEN_TRACEBACK=1` for details
 2|wrong usage or configuration
-3|some records failed: the set is usable and the manifest names them, unless `--allowed-loss` stopped the run
+3|some records failed: the set is usable and the manifest names them, unless `--allowed-loss` stopped the run; of \
+`check`: a recording cannot be compared
 4|`verify` found a difference, `check` a change, `audit --strict` a trap or too few gearboxes
 130|interrupted; the same command goes on where it stopped
 """

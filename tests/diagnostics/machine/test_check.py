@@ -92,9 +92,33 @@ def test_what_cannot_be_compared_is_said(
     machine: Path, tmp_path: Path, changed: dict[str, float], verdict: str, reason: str
 ) -> None:
     code, said = run("check", machine, write_recording(tmp_path / "new.npz", seed=60, **changed))
-    assert code == 0
+    assert code == 3
     assert f"new.npz: {verdict}" in said
+    assert said.count("new.npz") == 1
     assert reason in said
+
+
+def test_a_wrong_rate_is_known_by_the_tacho_and_leaves_no_trace(tmp_path: Path) -> None:
+    files = [write_recording(tmp_path / f"healthy_{k}.npz", seed=k, tacho=True) for k in range(4)]
+    assert run("baseline", *files, *TOLD, "--out", tmp_path / "rig")[0] == 0
+    held = dict(np.load(write_recording(tmp_path / "new.npz", seed=9, tacho=True)))
+    np.savez(tmp_path / "new.npz", **{name: values for name, values in held.items() if name != "t"})
+    wrong = rig_file(tmp_path, fs_hz=2 * FS_HZ)
+    with pytest.raises(
+        UsageError, match=r"new.npz: 16000 Hz; the references 8000 Hz, their pinion 2\d.* this one 49\.9.*fs_hz: 8000"
+    ):
+        run("check", tmp_path / "rig", tmp_path / "new.npz", *wrong)
+    assert past_checks(tmp_path / "rig") == []
+    both = (
+        "--teeth",
+        "20,31",
+        *rig_file(tmp_path, fs_hz=2 * FS_HZ, tacho="pulse", tacho_pulses=1, speed="20,30", unit="g"),
+    )
+    with pytest.raises(
+        UsageError, match=r"the tacho gives 49\.9.* outside of 20 to 30 Hz.*sampling rate right, 16000 Hz"
+    ):
+        run("indicators", tmp_path / "new.npz", *both)
+    assert run("check", tmp_path / "rig", tmp_path / "new.npz")[0] == 0
 
 
 def test_another_load_is_not_compared(machine: Path, tmp_path: Path) -> None:

@@ -64,7 +64,8 @@ def test_what_real_recorders_and_machines_add_does_not_turn_the_angle(kind: str)
 def test_a_range_that_misses_the_speed_is_refused_with_the_speed_that_was_seen(limits: tuple[float, float]) -> None:
     made = made_gears(TEETH, seconds=4.0)
     with pytest.raises(
-        UsageError, match=r"(the lines fit 2[34]\.\d+ Hz|no lines of 27/71 teeth).*Check range and teeth"
+        UsageError,
+        match=r"(the lines fit 2[34]\.\d+ Hz|no lines of 27/71 teeth).*teeth and the sampling rate \(\d+ Hz",
     ):
         shaft_angle(made.channels, made.fs_hz, TEETH, limits)
 
