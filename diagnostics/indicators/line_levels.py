@@ -29,17 +29,15 @@ LEVELS = (
 )
 
 
-def synchronous_ratio_db(turns: np.ndarray, averaged: int = REVOLUTIONS_AVERAGED) -> float:
+def synchronous_ratio_db(turns: np.ndarray) -> float:
     """Return 10 log10 of synchronous over remaining variance [dB]; NaN where nothing is synchronous or nothing remains.
 
     Parameters
     ----------
     turns : (revolutions, steps) float64
         Signal at equal angle steps, one row per revolution.
-    averaged : int
-        Revolutions per average; a shorter record is averaged as a whole.
     """
-    size = min(averaged, turns.shape[0])
+    size = min(REVOLUTIONS_AVERAGED, turns.shape[0])
     if size < 2:
         return math.nan
     groups = turns[: turns.shape[0] // size * size].reshape(-1, size, turns.shape[1])

@@ -150,7 +150,11 @@ def residual_lines(lines: np.ndarray, teeth: np.ndarray) -> np.ndarray:
     return np.where(kept[:, None, :], lines, 0.0)
 
 
-def moved(records: AveragedRecords, rng: np.random.Generator, gain_db: float, terms: int = 8) -> AveragedRecords:
+TERMS = 8
+"""Of the cosine series that a path is; more make it rougher."""
+
+
+def moved(records: AveragedRecords, rng: np.random.Generator, gain_db: float) -> AveragedRecords:
     """Return the records as seen from another tooth and through another smooth path, for training only.
 
     Record and reference are turned together and pass one path per channel: a gearbox has one. Source: derived
@@ -164,14 +168,12 @@ def moved(records: AveragedRecords, rng: np.random.Generator, gain_db: float, te
         Draws angles and paths.
     gain_db : float
         Standard deviation of a path's gain at any order [dB]; its phase scatters by 0.25 rad per 1 dB.
-    terms : int
-        Terms of the cosine series that a path is; more make it rougher.
     """
     count, channels, orders = records.lines.shape
     place = np.arange(orders) / (orders - 1)
-    series = np.cos(np.pi * np.arange(terms)[:, None] * place) / np.sqrt((1 + terms) / 2.0)
-    gain = gain_db * np.log(10.0) / 20.0 * (rng.standard_normal((count, channels, terms)) @ series)
-    phase = 0.25 * gain_db * (rng.standard_normal((count, channels, terms)) @ series)
+    series = np.cos(np.pi * np.arange(TERMS)[:, None] * place) / np.sqrt((1 + TERMS) / 2.0)
+    gain = gain_db * np.log(10.0) / 20.0 * (rng.standard_normal((count, channels, TERMS)) @ series)
+    phase = 0.25 * gain_db * (rng.standard_normal((count, channels, TERMS)) @ series)
     turn = 2.0 * np.pi * rng.uniform(size=(count, 1, 1)) * np.arange(orders)
     factor = np.exp(gain + 1j * (phase + turn)).astype(np.complex64)
     healthy = None if records.healthy is None else records.healthy * factor

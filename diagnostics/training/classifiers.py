@@ -210,9 +210,7 @@ def _chosen_trees(values: np.ndarray, truth: np.ndarray, chooses: np.ndarray, se
     return 1 + int(np.argmin(losses))
 
 
-def trained(
-    model: _Baseline, matrix: FeatureMatrix, split: SpecimenSplit, target: np.ndarray | None = None
-) -> FeatureClassifier:
+def trained(model: _Baseline, matrix: FeatureMatrix, split: SpecimenSplit) -> FeatureClassifier:
     """Return a classifier learnt from training specimens, whose choices and temperature suit the validation specimens.
 
     Parameters
@@ -223,10 +221,8 @@ def trained(
         All records.
     split : SpecimenSplit
         Whose specimens are which.
-    target : (n,) int, optional
-        Labels to learn, default the true states; the permutation control passes permuted ones.
     """
-    truth = state_index(matrix, split.classes) if target is None else target
+    truth = state_index(matrix, split.classes)
     used = split.train | split.validation
     seen = matrix.rows(used)
     model.fit(seen.values, truth[used], seen.groups, split.validation[used])

@@ -146,14 +146,14 @@ def _outline(pair: GearPair, size: SpallSize, reading: str) -> Outline:
     return rectangle(heights, (face - across, face + across))
 
 
-def spall_problems(pair: GearPair, size: SpallSize, reading: str, prefix: str = "") -> Iterator[Problem]:
+def spall_problems(pair: GearPair, size: SpallSize, reading: str) -> Iterator[Problem]:
     """Yield what is wrong with a spall by itself, at every combination of its bounds."""
     for corner in corners(partial(draw, size, path="")):
         spall = spall_on_tooth(pair, corner, reading, 0)
         for problem in damage_problems(pair, (spall,)):
             if problem.name != "contact":
                 key = SPALL_KEYS.get(problem.name, "profile_length_mm")
-                yield Problem(prefix + key, problem.received, f"allowed: {problem.allowed}")
+                yield Problem(key, problem.received, f"allowed: {problem.allowed}")
 
 
 def largest_spall(pair: GearPair, size: SpallSize, reading: str, tooth: int) -> FlankSpall:

@@ -301,7 +301,6 @@ class HousingModes(BoxModes):
     ----------
     found : modes of both halves
     order : (m,) number of each mode among those of the first half (walls alike), then of the second (oppositely)
-    resolved_hz : shapes follow the bending waves of the thinnest plate up to here
     """
 
     frequency_hz: FloatArray
@@ -309,7 +308,6 @@ class HousingModes(BoxModes):
     halves: tuple[HalfFunctions, HalfFunctions]
     found: tuple[LowestModes, LowestModes]
     order: IntArray
-    resolved_hz: float
 
     def shapes(self, motions: Sequence[WallMotion]) -> FloatArray:
         """Return the shapes (motions, m) [kg^-1/2] of all modes, as displacements; slopes per metre."""
@@ -350,8 +348,7 @@ def housing_modes(box: Box, highest_hz: float | None = None, waves: float | None
         If the bolts leave the box free to move.
     """
     waves = waves_for(box, highest_hz) if waves is None else waves
-    resolved = resolved_hz(box, waves)
-    highest = BEYOND * resolved if highest_hz is None else highest_hz
+    highest = BEYOND * resolved_hz(box, waves) if highest_hz is None else highest_hz
     halves = tuple(HalfFunctions(box.size_m, degrees(box, waves), odd) for odd in (False, True))
     found, shares = [], []
     for half in halves:
@@ -367,7 +364,6 @@ def housing_modes(box: Box, highest_hz: float | None = None, waves: float | None
         halves=(halves[0], halves[1]),
         found=(found[0], found[1]),
         order=order,
-        resolved_hz=resolved,
     )
 
 

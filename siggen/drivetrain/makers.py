@@ -99,14 +99,13 @@ class Housing:
         return place if known else None
 
 
-def rigid_housing(casing: Casing, places_m: Mapping[str, Point], name: str = "casing") -> Housing:
+def rigid_housing(casing: Casing, places_m: Mapping[str, Point]) -> Housing:
     """Return a rigid casing on bolts, c = 2 ζ √(k m_c/bolts) each; a force beside its bearings acts in its middle.
 
     Parameters
     ----------
     casing : Casing
     places_m : bearings of every shaft -> where it stands
-    name : str, of the body
 
     Raises
     ------
@@ -123,17 +122,17 @@ def rigid_housing(casing: Casing, places_m: Mapping[str, Point], name: str = "ca
     share, left = casing.mass_kg / len(bolts.places_m), (bolts.loose_share, *(1.0 for _ in bolts.places_m[1:]))
     elements = []
     for (h, v), part in zip(bolts.places_m, left, strict=True):
-        ends = (1.0, Place(name, (h, v, 0.0))), (-1.0, Place(BASE, (h, v, 0.0)))
+        ends = (1.0, Place("casing", (h, v, 0.0))), (-1.0, Place(BASE, (h, v, 0.0)))
         damping = 2.0 * bolts.damping_ratio * np.sqrt(part * stiffness * share)
         elements.append(Element("bolt", ends, PLANE, np.diag(part * stiffness), np.diag(damping)))
-    seats = {bearing: Place(name, (h, v, 0.0)) for bearing, (h, v) in places_m.items()}
-    sensors = {f"casing_{place}": Place(name, (h, v, 0.0)) for place, (h, v) in casing.sensor_places_m.items()}
+    seats = {bearing: Place("casing", (h, v, 0.0)) for bearing, (h, v) in places_m.items()}
+    sensors = {f"casing_{place}": Place("casing", (h, v, 0.0)) for place, (h, v) in casing.sensor_places_m.items()}
     return Housing(
-        Body(name, casing.mass_kg, casing.inertia_kg_m2, moves=("x", "y", ROCKING)),
+        Body("casing", casing.mass_kg, casing.inertia_kg_m2, moves=("x", "y", ROCKING)),
         tuple(elements),
         seats,
         _ways({**seats, **sensors}, PLANE),
-        _ways({"auxiliary_drive": Place(name)}, PLANE),
+        _ways({"auxiliary_drive": Place("casing")}, PLANE),
     )
 
 

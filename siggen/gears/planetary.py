@@ -94,15 +94,6 @@ class PlanetarySet:
         """Turns of the carrier after which all teeth meet again as they did."""
         return lcm(Fraction(self.ring, self.sun).denominator, Fraction(self.ring, self.planet).denominator)
 
-    def excited(self, harmonic: int) -> str:
-        """Return what a harmonic of the mesh frequency moves in a set with equal planets at equal distances.
-
-        `rotation`: forces on the centre cancel; `translation`: torques do; `planets`: both do.
-        """
-        count = len(self.places)
-        step = harmonic * self.sun % count
-        return "rotation" if step == 0 else "translation" if step in {1, count - 1} else "planets"
-
 
 def typed_places(positions_deg: Sequence[float], slots: int) -> tuple[Fraction, ...]:
     """Return places in turns of positions as a user types them; the exact one where a planet fits that near."""

@@ -7,14 +7,10 @@ psi dpsi.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt
-
-import numpy as np
 
 from siggen.damage.flank_damage import lost_contacts
-from siggen.damage.heights import flank_heights
 from siggen.damage.outlines import Outline
-from siggen.damage.part import Damage, ToothDamage, damaged_teeth, pits_of
+from siggen.damage.part import Damage, damaged_teeth, pits_of
 from siggen.gears.gear_pair import GearPair
 from siggen.gears.spur_gear import SpurGear
 from siggen.mesh.mesh_stiffness import largest_line_loss
@@ -46,10 +42,6 @@ class DamageSummary:
     through_face : bool
         Whether the damage takes the whole face width somewhere on the path of contact, on one flank or on two that
         meet: there no contact length remains.
-    sagitta_m : float
-        How far the mating flank could sink into the longest profile arc l if it went through the face: l^2/(8 R_e)
-        (derived: chord of the relative curvature), R_e = s (T - s)/T at the contact position s of the middle of the
-        arc, T the line of action's length; a middle off the path of contact counts at the path's nearer end [m].
     """
 
     count: int
@@ -59,7 +51,6 @@ class DamageSummary:
     largest_profile_length_m: float
     contact_length_loss_m: float
     through_face: bool
-    sagitta_m: float
 
 
 def damage_summary(pair: GearPair, damage: Damage) -> DamageSummary:
@@ -84,7 +75,6 @@ def damage_summary(pair: GearPair, damage: Damage) -> DamageSummary:
         largest_profile_length_m=longest.profile_arc_m(pair.member(longest.gear)) if longest else 0.0,
         contact_length_loss_m=loss,
         through_face=_through_face(pair, damage),
-        sagitta_m=_sagitta_m(pair, longest) if longest else 0.0,
     )
 
 
@@ -111,16 +101,3 @@ def _through_face(pair: GearPair, damage: Damage) -> bool:
 def _face_length(outline: Outline, width: float) -> float:
     low, high = outline.face_range_m
     return min(high, width) - max(low, 0.0)
-
-
-def _sagitta_m(pair: GearPair, pit: ToothDamage) -> float:
-    if pit.outline is None:
-        return 0.0
-    gear = pair.member(pit.gear)
-    low, high = gear.roll_at_height(np.clip(pit.outline.height_range_m, *flank_heights(gear)))
-    # The arc is R_b psi^2/2: its middle has the mean square of the roll angles.
-    travel = gear.signed_base_radius_m * sqrt(0.5 * (low * low + high * high))
-    line = pair.line_of_action_m
-    position = travel if pit.gear == Side.DRIVER else line - travel
-    s = min(max(position, pair.contact_start_m), pair.contact_end_m)
-    return pit.profile_arc_m(gear) ** 2 * line / (8.0 * s * (line - s))

@@ -44,12 +44,8 @@ def record_response(
     record: PlannedRecord,
     *,
     internals: bool = False,
-    driven: RecordDrive | None = None,
-    motions: Collection[str] | None = None,
 ) -> tuple[Response, OperatingPoint]:
-    """Return the clean response of one record and its operating point; `driven` is drawn unless it is at hand.
-
-    Accelerations are those of `motions`, all without them.
+    """Return the clean response of one record, with the accelerations of all motions, and its operating point.
 
     Raises
     ------
@@ -58,8 +54,8 @@ def record_response(
     """
     with refused_as("outside_model"):
         specimen, state = at_point(specimen, state, record)
-        driven = driven or state_drive(specimen, state, record)
-        stream, _ = _stream(specimen, state, record, driven, internals=internals, motions=motions)
+        driven = state_drive(specimen, state, record)
+        stream, _ = _stream(specimen, state, record, driven, internals=internals)
         with stage("loop"):
             response = collected_response(stream)
     if response.status != "ok":

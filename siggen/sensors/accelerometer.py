@@ -53,7 +53,6 @@ class Accelerometer(SourceKeys, SensorBase):
     """
 
     quantity: ClassVar[Quantity] = ACCELERATION
-    noun: ClassVar[str] = "accelerometer"
     plausible: ClassVar[tuple[float, float, str]] = (1.0, 2e4, "is it in m/s², not g?")
     understood_kind: ClassVar[bool] = True
 

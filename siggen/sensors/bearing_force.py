@@ -20,7 +20,6 @@ class ForceWasher(SensorBase):
     """Washers under both bearings of a shaft: their force on the housing, mean included."""
 
     quantity: ClassVar[Quantity] = Quantity("bearing force", "force", "N", "n")
-    noun: ClassVar[str] = "force washer"
     acts: ClassVar[str] = "Force washers show what both bearings of a shaft press on the housing with, mean included."
     plausible: ClassVar[tuple[float, float, str]] = (10.0, 1e7, "is it in N, not kN?")
 

@@ -20,7 +20,6 @@ class TorqueSensor(SensorBase):
     """A torque flange in a coupling: stiffness times twist and damping times its rate, mean included."""
 
     quantity: ClassVar[Quantity] = Quantity("torque", "torque", "N m", "nm")
-    noun: ClassVar[str] = "torque sensor"
     acts: ClassVar[str] = "Torque sensors show what spring and damper of a coupling pass on, mean included."
     plausible: ClassVar[tuple[float, float, str]] = (1.0, 1e7, "is it in N m, not kN m?")
 

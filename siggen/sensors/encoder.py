@@ -36,7 +36,6 @@ class Encoder(SensorBase):
     """An incremental encoder on a shaft, as a counter stores it: the mean angular speed over each sampling interval."""
 
     quantity: ClassVar[Quantity] = Quantity("angular speed", "speed", "rad/s", "rad_s", "rotation")
-    noun: ClassVar[str] = "encoder"
     acts: ClassVar[str] = (
         "Encoders time the marks of a disc that turns with its shaft, vibration included; "
         "stored is the mean speed over each sampling interval, whose sum over fs is the angle."

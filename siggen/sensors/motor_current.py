@@ -36,7 +36,6 @@ class MotorCurrent(SensorBase):
     """Clamps about the phases of an induction motor at a line frequency that does not change within a record."""
 
     quantity: ClassVar[Quantity] = Quantity("current", "current", "A", "a")
-    noun: ClassVar[str] = "current clamp"
     acts: ClassVar[str] = (
         "Current clamps show the phases of an induction motor: the line frequency is that at which it turns as it does "
         "under its torque, and uneven rotation moves the active current by its slip."

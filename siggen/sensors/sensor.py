@@ -68,9 +68,6 @@ class SensorBase(Section):
     quantity: ClassVar[Quantity]
     """What its channels hold."""
 
-    noun: ClassVar[str]
-    """What it is called, such as "accelerometer"."""
-
     acts: ClassVar[str] = ""
     """A sentence of the card on how it reads the model, where that needs one."""
 

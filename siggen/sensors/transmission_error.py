@@ -31,7 +31,6 @@ class TransmissionError(SensorBase):
     """
 
     quantity: ClassVar[Quantity] = Quantity("transmission error", "transmission_error", "um", "um", "rotation")
-    noun: ClassVar[str] = "pair of encoders"
     acts: ClassVar[str] = (
         "Transmission errors are those that two encoders see, base radius times angle of the pinion's shaft less that "
         "of the gear's, about their mean."

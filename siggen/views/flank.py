@@ -34,7 +34,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def outline_mm(outline: Outline, points: int = 181) -> FloatArray:
+CORNERS = 181
+"""Of the polygon on a smooth outline."""
+
+
+def outline_mm(outline: Outline) -> FloatArray:
     """Return the corners of a closed outline (n, 2): face coordinate and height above the base circle [mm].
 
     The height is along the tooth's centre line, as in the configuration. Not clipped to the flank. A smooth outline is
@@ -42,7 +46,7 @@ def outline_mm(outline: Outline, points: int = 181) -> FloatArray:
 
     Source: paper A, section 2.1 (ellipses); polygons derived.
     """
-    return 1e3 * outline.drawn_m(points)[:, ::-1]
+    return 1e3 * outline.drawn_m(CORNERS)[:, ::-1]
 
 
 @dataclass(frozen=True, slots=True)

@@ -75,16 +75,15 @@ def damaged_engagements(pair: GearPair, damage: Damage) -> tuple[int, int]:
     return ordered[0], ordered[-1]
 
 
-def pitches_shown(engagements: tuple[int, int], points_per_pitch: int, pitches: int | None = None) -> FloatArray:
+def pitches_shown(engagements: tuple[int, int], points_per_pitch: int) -> FloatArray:
     """Return places in pitches from the first damaged engagement, from one before it to two behind the last (k,)."""
-    count = engagements[1] - engagements[0] + 3 if pitches is None else pitches
+    count = engagements[1] - engagements[0] + 3
     return np.arange(-points_per_pitch, (count - 1) * points_per_pitch + 1) / points_per_pitch
 
 
 def stiffness_curves(
     specimen: Specimen,
     points_per_pitch: int = POINTS_PER_PITCH,
-    pitches: int | None = None,
     torque_nm: float | None = None,
     states: Container[str] | None = None,
     mesh: int = 0,
@@ -95,7 +94,6 @@ def stiffness_curves(
     ----------
     specimen : Specimen
     points_per_pitch : int, samples over one angular pitch of the pinion
-    pitches : int, angular pitches from one before the damage on; None: to two pitches behind the last damaged tooth
     torque_nm : float, on the mesh's pinion, for damage that acts as geometry; None: that of the first operating point
     states : names of those wanted; None: all. The angles are the same for all
     mesh : int, from 0 in the order of power
@@ -117,7 +115,7 @@ def stiffness_curves(
     damages = [on_teeth(teeth.damage(i)) for i in range(len(specimen.states))]
     hit = [damaged_engagements(pair, one) for one in damages if one] or [(0, 0)]
     shown = min(first for first, _ in hit), max(last for _, last in hit)
-    angle = pitches_shown(shown, points_per_pitch, pitches) * 2 * pi / pair.pinion.teeth
+    angle = pitches_shown(shown, points_per_pitch) * 2 * pi / pair.pinion.teeth
     wanted = [i for i, state in enumerate(specimen.states) if states is None or state.name in states]
     words = [gear.column for gear in specimen.names.meshes[mesh].gears]
     across = specimen.law.across_the_face

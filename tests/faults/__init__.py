@@ -3,7 +3,5 @@
 In their rows `measured` is how many were found or refused, `alternative` what else happened, the goal is all of them.
 """
 
-PARTS = (
-    *("mutated_configurations", "mutated_recordings", "foreign_sets", "bit_flips", "shortages", "kills"),
-)
+PARTS = (*("mutated_configurations", "mutated_recordings", "foreign_sets", "bit_flips", "shortages", "kills"),)
 """Each by itself: `python -m tests.faults kills`."""

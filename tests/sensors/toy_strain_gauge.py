@@ -22,7 +22,6 @@ class ToyStrainGauge(SensorBase):
     """What a user writes about it."""
 
     quantity: ClassVar[Quantity] = Quantity("strain", "strain", "um/m", "um_m")
-    noun: ClassVar[str] = "strain gauge"
     acts: ClassVar[str] = "Toy gauges show the strain of a bearing's seat about its mean."
     plausible: ClassVar[tuple[float, float, str]] = (1.0, 1e4, "is it in um/m?")
 

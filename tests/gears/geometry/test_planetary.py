@@ -1,5 +1,4 @@
 from fractions import Fraction
-from math import pi
 
 import numpy as np
 import pytest
@@ -23,20 +22,6 @@ def test_phases_are_those_of_teeth_that_are_watched_as_they_pass(teeth: Planetar
             passed = np.abs(standing).min(axis=1).argmin() / 20_000
             assert (passed + float(phase) + 0.5) % 1.0 == pytest.approx(0.5, abs=2e-4)  # two steps of the watching
     assert teeth.phases == tuple(begins % 1 for begins in teeth.ring_begins)
-
-
-@pytest.mark.parametrize(
-    ("teeth", "planets"), [((24, 27, 78), 3), ((20, 23, 66), 4), ((21, 22, 67), 4), ((28, 16, 62), 5)]
-)
-def test_excitation_of_the_centre_follows_the_rule_of_phases(teeth: tuple[int, int, int], planets: int) -> None:
-    one = PlanetarySet(*teeth, even_places(planets))
-    directions = np.exp(2j * pi * np.array(one.places, float))
-    for harmonic in range(1, 6):
-        waves = np.exp(2j * pi * harmonic * np.array([-one.sun * place for place in one.places], float))
-        torque = abs(waves.sum())
-        push = max(abs((waves * directions).sum()), abs((waves * directions.conj()).sum()))
-        found = "rotation" if torque > 1e-9 else "translation" if push > 1e-9 else "planets"
-        assert one.excited(harmonic) == found
 
 
 @pytest.mark.parametrize(
