@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 from siggen.checks.housing_problems import housing_problems
 from siggen.checks.loading import load_config
-from siggen.config import inherited, parse_yaml, yaml_text
+from siggen.config import inherited, parse_yaml
 from siggen.drivetrain.box import layout
 from siggen.errors import ConfigError
 from siggen.gearbox.housing import plate_numbers, specimen_layout
@@ -48,15 +47,6 @@ def test_what_does_not_fit_is_refused_by_key(changes: dict[str, object], key: st
     found = refusals(**changes)
     assert list(found) == [key]
     assert words in found[key]
-
-
-def test_the_line_of_the_file_is_told(tmp_path: Path) -> None:
-    file = tmp_path / "narrow.yaml"
-    text = yaml_text(minimal(housing__length_mm=210.0))
-    file.write_text(text)
-    line = next(number for number, one in enumerate(text.splitlines(), start=1) if "length_mm: 210" in one)
-    with pytest.raises(ConfigError, match=rf"housing\.length_mm: received 210; allowed: at least .* \(line {line}\)"):
-        load_config(file)
 
 
 @pytest.mark.parametrize("shafts", [None, SHAFTS])

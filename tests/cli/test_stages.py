@@ -196,15 +196,3 @@ def test_modes_are_those_of_all_shafts_and_call_a_machines_gears_by_name(tmp_pat
     assert list(found["mesh_stiffness_n_per_m"]) == ["fast", "slow"]
     moving = {name.partition("shape_theta_")[2] for name in found["modes"][0] if "theta" in name}
     assert moving == {"motor", "ida", "otto", "eva", "karl", "load"}
-
-
-@pytest.mark.slow
-def test_the_preset_of_two_stages_is_generated_and_verified(tmp_path: Path) -> None:
-    little = ("--set", "specimens=1", "--set", "duration_s=0.1")
-    done = run("generate", "two_stage", *little, "--out", str(tmp_path / "set"), "--executor", "serial")
-    assert done.returncode == 0, done.stderr
-    states = {row["state"]: row["faulty_gear"] for row in rows(tmp_path / "set", "labels")}
-    expected = {"slight": "c", "severe": "c", "fast_severe": "a"}
-    assert states == {"healthy": "none", **expected, "sham": "none"}
-    done = run("verify", str(tmp_path / "set"), "--physics", "1")
-    assert done.returncode == 0, done.stdout + done.stderr

@@ -6,7 +6,6 @@ from math import degrees, inf
 
 import pytest
 
-from siggen.checks.loading import load_config
 from siggen.damage.crack import RootCrack
 from siggen.errors import ConfigError
 from siggen.gears.spur_gear import root_chord
@@ -95,13 +94,3 @@ def test_what_cannot_be_is_refused_with_key_value_and_what_is_allowed(damages, s
         config_with(*damages)
     for part in said:
         assert part in str(refused.value)
-
-
-def test_the_line_of_the_file_is_named(tmp_path) -> None:
-    file = tmp_path / "deep.yaml"
-    file.write_text(
-        "extends: quickstart\nname: deep\nstates:\n  others: null\n"
-        "  severe:\n    damage:\n      kind: crack\n      depth_share: 0.6\n"
-    )
-    with pytest.raises(ConfigError, match=r"depth_share: received 0\.6.*line 8"):
-        load_config(file)

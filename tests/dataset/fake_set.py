@@ -194,13 +194,6 @@ def simulate_and_die_once(config: SetDesign, record_ids: Sequence[int]) -> list[
     return simulate(config, record_ids)
 
 
-def simulate_and_die(config: SetDesign, record_ids: Sequence[int]) -> list[SimulatedRecord | RecordFailure]:
-    """Kill the worker at record 8, every time."""
-    if 8 in record_ids:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return simulate(config, record_ids)
-
-
 def damage_rows(config: SetDesign, record_ids: Sequence[int]) -> list[dict[str, object]]:
     """Stand in for `siggen.sets.drawn.damage_rows`: one ellipse per pit."""
     return [row for record_id in record_ids for row in _pits(config, record_id)]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 from math import radians
 
@@ -46,45 +45,24 @@ def planetary_stage(planets: int = 3, sun: int = 24, planet: int = 27, ring: int
     )
 
 
-def exact(tables: MeshTables, teeth: tuple[int, int], offsets_m: tuple[float, float] = (0.0, 0.0)) -> MissingMaterial:
-    gears = [
-        MissingTables(np.zeros((1, 2)), np.zeros(z, dtype=np.int32), np.full(z, o))
-        for z, o in zip(teeth, offsets_m, strict=True)
-    ]
+def exact(tables: MeshTables, teeth: tuple[int, int]) -> MissingMaterial:
+    gears = [MissingTables(np.zeros((1, 2)), np.zeros(z, dtype=np.int32), np.zeros(z)) for z in teeth]
     return MissingMaterial(tables.start_m, tables.end_m, *gears)
 
 
-def softer(tables: MeshTables, tooth: tuple[int, ...] | None, gear: int) -> MeshTables:
-    """Return the tables with all pairs of some teeth of one gear at 0.7 of their stiffness."""
-    if tooth is None:
-        return tables
-    rows = tables.table_of_pair.copy()
-    rows[(list(tooth), slice(None)) if gear == 0 else (slice(None), list(tooth))] = 1
-    healthy = tables.pair_stiffness_n_per_m
-    return replace(tables, pair_stiffness_n_per_m=np.concatenate([healthy, 0.7 * healthy]), table_of_pair=rows)
-
-
-def meshes(structure: Structure, teeth: PlanetarySet, late_m: float = 0.0, faulty: str = "") -> list[PairMesh]:
-    """Return the laws of all meshes.
-
-    The first planet's flanks stand back by `late_m`, as a pin out of place has it; tooth 3 of a `faulty` sun or ring is
-    softer.
-    """
+def meshes(structure: Structure, teeth: PlanetarySet) -> list[PairMesh]:
+    """Return the laws of all meshes."""
     pair, inner = pairs(teeth.sun, teeth.planet, teeth.ring)
-    options, lag = StiffnessOptions(), ring_begins_pitches(pair, inner)
-    tooth, count = (3,), len(teeth.places)
-    of_sun = softer(mesh_tables(pair, (), options), tooth if faulty == "sun" else None, 0)
-    of_ring = softer(mesh_tables(inner, (), options), tooth if faulty == "ring" else None, 1)
+    options, lag, count = StiffnessOptions(), ring_begins_pitches(pair, inner), len(teeth.places)
     kinds = [
-        (of_sun, (teeth.sun, teeth.planet), teeth.sun_begins, 0.0, pair.line_of_action_m),
-        (of_ring, (teeth.planet, teeth.ring), teeth.ring_begins, lag, inner.line_of_action_m),
+        (mesh_tables(pair, (), options), (teeth.sun, teeth.planet), teeth.sun_begins, 0.0, pair.line_of_action_m),
+        (mesh_tables(inner, (), options), (teeth.planet, teeth.ring), teeth.ring_begins, lag, inner.line_of_action_m),
     ]
     found = []
     for number, vectors in enumerate(structure.meshes):
         tables, counts, begins, later, line = kinds[number // count]
-        offsets = (0.0, late_m if number == 0 else 0.0)
         constants = MeshConstants(line, vectors.mass_kg, 100e-6)
-        law = pair_law(tables, exact(tables, counts, offsets), constants, damping_ratio=0.07)
+        law = pair_law(tables, exact(tables, counts), constants, damping_ratio=0.07)
         phase = later + float(begins[number % count])
         found.append(PairMesh(law, mean_mesh_stiffness(tables), 20.0, begins_pitches=phase))
     return found

@@ -12,7 +12,7 @@ import pytest
 import siggen
 from diagnostics.audit.envelope import realism
 from diagnostics.audit.measured_set import measured_set
-from diagnostics.audit.traps import separability_findings, verdict
+from diagnostics.audit.traps import separability_findings
 from siggen.checks.loading import load_config
 from siggen.checks.plausibility import implausible
 from siggen.config.inheritance import inherited
@@ -108,15 +108,6 @@ def test_healthy_records_of_the_bench_have_sidebands(tmp_path: Path) -> None:
     assert np.all((sideband > -34.0) & (sideband < 0.0))
     assert np.mean((sideband > -30.0) & (sideband < -8.0)) >= 0.5
     assert -30.0 < np.median(sideband) < -8.0
-
-
-@pytest.mark.slow  # perfect gears of any set: tests/diagnostics/audit
-def test_the_ideal_set_is_trivially_separable(tmp_path: Path) -> None:
-    config = preset("../tests/configs/ideal", ("healthy", "slight", THROUGH), specimens=4, duration_s=0.4)
-    siggen.generate(config, tmp_path / "ideal", executor="serial")
-    findings = separability_findings(measured_set(siggen.open(tmp_path / "ideal")))
-    assert "healthy_without_sidebands" in [finding.trap for finding in findings]
-    assert verdict(findings, config.specimens).startswith("Scores on this set do not measure damage alone")
 
 
 MODULES_OF_ISO_54 = {1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0}

@@ -66,11 +66,6 @@ def test_it_adds_to_the_drawn_run_out_as_a_vector_and_leaves_all_other_errors() 
     assert before.pinion.found.runout_m == after.pinion.found.runout_m
 
 
-def test_nothing_added_is_the_healthy_gear() -> None:
-    chosen = config("pinion", 0.0)
-    assert errors(chosen, 1).pinion.errors.eccentricity_m == errors(chosen, 0).pinion.errors.eccentricity_m
-
-
 def test_perfect_gears_have_no_place_for_it() -> None:
     with pytest.raises(ConfigError, match=r"states\.off\.changes\.dynamics\.pinion\.eccentricity_um"):
         config("pinion", 30.0, "null")

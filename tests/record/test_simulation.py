@@ -27,20 +27,6 @@ def specimen(config: SetDesign) -> list[SimulatedRecord]:
     return results  # type: ignore[return-value]
 
 
-def same(a: SimulatedRecord, b: SimulatedRecord) -> bool:
-    signals = all(np.array_equal(a.channels[c], b.channels[c]) for c in a.channels)
-    return signals and a.labels == b.labels and np.array_equal(a.tacho_s, b.tacho_s) and a.planned == b.planned
-
-
-def test_a_record_is_a_function_of_configuration_and_index_alone(
-    config: SetDesign, specimen: list[SimulatedRecord]
-) -> None:
-    for index in (5, 0, 3):
-        alone = next(simulated(config, [index]))
-        assert isinstance(alone, SimulatedRecord)
-        assert same(alone, specimen[index])
-
-
 def test_records_of_several_specimens_come_back_in_the_order_asked_for(config: SetDesign) -> None:
     per_specimen = config.records_per_specimen
     ids = [per_specimen, 0, per_specimen + 1]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import signal
 import subprocess
@@ -17,7 +16,7 @@ from typer.testing import CliRunner
 
 import siggen
 from siggen.cli.app import app
-from siggen.errors import EXIT_INTERRUPTED, DatasetError, EngineError, UsageError
+from siggen.errors import EXIT_INTERRUPTED, DatasetError, UsageError
 from siggen.file_writing import LEFTOVER_SUFFIX
 from siggen.sets.generation import generate
 from siggen.sets.set_run import InterruptionError
@@ -25,8 +24,6 @@ from tests.dataset.fake_set import (
     fake_config,
     fake_physics,
     file_bytes,
-    simulate_and_die,
-    simulate_and_die_once,
     write_fake_set,
 )
 
@@ -90,18 +87,6 @@ def test_a_signal_ends_with_130_committed_shards_and_a_hint(tmp_path: Path, refe
     assert_complete(tmp_path, reference)
 
 
-@pytest.mark.slow  # quiet after a signal to the driver: above
-def test_ctrl_c_for_the_whole_process_group_is_quiet_too(tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "tests.dataset.fake_set", str(tmp_path), "2"]
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
-    wait_for(lambda: len(shards(tmp_path)) >= 1, process)
-    os.killpg(process.pid, signal.SIGINT)
-    _, said = process.communicate()
-    assert process.returncode == EXIT_INTERRUPTED
-    assert said.count("\n") == 1
-    assert said.startswith("stopped: ")
-
-
 def test_an_interrupted_call_raises_and_continues(tmp_path: Path, reference: dict[str, bytes]) -> None:
     def interrupt(done: int, total: int) -> None:
         if done >= 8:
@@ -111,23 +96,6 @@ def test_an_interrupted_call_raises_and_continues(tmp_path: Path, reference: dic
         generate(fake_config(), tmp_path, 0, interrupt)
     write_fake_set(tmp_path)
     assert_complete(tmp_path, reference)
-
-
-@pytest.mark.slow  # what the pool does then: tests/workers
-def test_a_killed_worker_does_not_stop_generation(
-    tmp_path: Path, reference: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("SIGGEN_TEST_MARKER", str(tmp_path / "killed"))
-    write_fake_set(tmp_path / "set", workers=2, simulation=simulate_and_die_once)
-    assert (tmp_path / "killed").exists()
-    assert_complete(tmp_path / "set", reference)
-
-
-@pytest.mark.slow  # the same
-def test_a_record_that_kills_every_worker_ends_with_an_error_that_names_its_shard(tmp_path: Path) -> None:
-    with pytest.raises(EngineError, match=r"workers died 3 times.*Under way: shard train-00001 \(6 records"):
-        write_fake_set(tmp_path, workers=1, simulation=simulate_and_die)
-    assert not list(tmp_path.rglob(f"*{LEFTOVER_SUFFIX}"))
 
 
 MEMORY = """

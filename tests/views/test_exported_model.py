@@ -62,19 +62,7 @@ def test_scipy_integrates_the_exported_linear_model_to_the_same_motion() -> None
     assert max(differences("configs/paper_a.yaml", "dynamics.steps_per_sample=16", samples=120, rtol=1e-7)) < 2e-6
 
 
-STIFF = ("dynamics.friction.model=off", "dynamics.mesh.damping=constant", "dynamics.model=8dof", "housing={}")
 PINION = ("sensors.lid.place=pinion_bearing", "sensors.lid.position_mm=null")
-
-
-@pytest.mark.slow
-def test_scipy_integrates_the_exported_tooth_pairs_to_the_same_motion() -> None:
-    # Runge-Kutta steps of first order at contact events; sampled forces differ most at their steps.
-    coarse, fine = (
-        differences("tests/configs/casing.yaml", *STIFF, *PINION, f"dynamics.steps_per_sample={steps}", rtol=1e-7)
-        for steps in (4, 16)
-    )
-    assert max(fine) < 2e-3
-    assert max(coarse) > 2.0 * max(fine)
 
 
 @pytest.mark.slow

@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import math
 import shutil
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -147,18 +145,6 @@ def test_classifier_survives_its_file(
     test = matrix.rows(split.test)
     np.testing.assert_array_equal(again.predict(test).probability, model.predict(test).probability)
     assert json.loads((tmp_path / "feature_names.json").read_text())["features"] == list(matrix.names)
-
-
-@pytest.mark.slow  # so does the walk that predicts
-def test_a_process_that_has_imported_nothing_else_reads_a_classifier(
-    model: FeatureClassifier, split: SpecimenSplit, tmp_path: Path
-) -> None:
-    save_classifier(model, IndicatorSettings(), "identity", tmp_path)
-    code = "import sys; from pathlib import Path; from diagnostics.training.feature_classifier import load_classifier\n"
-    code += "print(load_classifier(Path(sys.argv[1])).classes)\n"
-    code += "assert 'torch' not in sys.modules"  # seconds of every command that reads a classifier
-    found = subprocess.run([sys.executable, "-c", code, tmp_path], capture_output=True, text=True, check=False)
-    assert (found.stdout.strip(), found.stderr) == (str(split.classes), "")
 
 
 def test_a_file_with_unknown_types_is_not_loaded(model: FeatureClassifier, tmp_path: Path) -> None:
