@@ -6,7 +6,7 @@ from functools import partial
 
 import pytest
 
-from siggen.config import Dynamics, GearsSection
+from siggen.config import GearsSection
 from siggen.keys.distributions import Uniform
 from siggen.keys.drawing import corners, draw
 from siggen.keys.number import Within, bounds
@@ -16,18 +16,6 @@ from siggen.sensors.accelerometer import Accelerometer
 from tests.config.minimal import config
 
 SPREAD = [0.05, 0.10]
-
-
-def numbers(section) -> dict[str, float]:
-    """Return all numbers of a section by their path."""
-    found = {}
-    for name in type(section).model_fields:
-        value = getattr(section, name)
-        if isinstance(value, float):
-            found[name] = value
-        elif hasattr(type(value), "model_fields"):
-            found |= {f"{name}.{key}": item for key, item in numbers(value).items()}
-    return found
 
 
 UNIFORM = named_uniforms(11, Stream.SUPPORTS, 0)
@@ -40,25 +28,6 @@ def drawn(section):
 def test_constants_are_left_as_they_are():
     gears = config().gears
     assert drawn(gears) == gears
-
-
-def test_a_number_that_becomes_a_distribution_does_not_shift_its_neighbours():
-    many = {f"dynamics__{key}": SPREAD for key in ("mesh_damping_ratio", "motor_inertia_kg_m2", "load_inertia_kg_m2")}
-    before = numbers(drawn(config(**many).dynamics))
-    after = numbers(drawn(config(**many, dynamics__backlash_um=[60, 120]).dynamics))
-    assert {key for key in before if before[key] != after[key]} == {"backlash_um"}
-
-
-def test_a_null_that_becomes_a_distribution_does_not_shift_its_neighbours():
-    stiff = {"log": [1e7, 1e9]}
-    keys = {
-        "dynamics__pinion__bearing__stiffness_n_per_m": stiff,
-        "dynamics__gear__bearing__stiffness_n_per_m": stiff,
-    }
-    before = numbers(drawn(config(**keys).dynamics))
-    after = numbers(drawn(config(**keys, dynamics__pinion__mass_kg=SPREAD).dynamics))
-    assert "pinion.mass_kg" not in before
-    assert before == {key: value for key, value in after.items() if key != "pinion.mass_kg"}
 
 
 @pytest.mark.parametrize(("section", "count"), [("gears", 9), ("dynamics", 38), ("stiffness", 0)])
@@ -81,11 +50,6 @@ def test_every_number_is_drawn_by_its_own_path(section, count):
     draw(spread(getattr(config(), section)), lambda name: asked.append(name) or 0.5, section)
     assert len(asked) == len(set(asked)) == count
     assert all(name.startswith(f"{section}.") for name in asked)
-
-
-def test_equal_distributions_of_different_numbers_are_drawn_independently():
-    dynamics = drawn(Dynamics.model_validate({"mesh_damping_ratio": SPREAD, "motor_inertia_kg_m2": SPREAD}))
-    assert dynamics.mesh_damping_ratio != dynamics.motor_inertia_kg_m2
 
 
 def test_gain_is_drawn_per_axis_and_noise_is_left_to_the_record():

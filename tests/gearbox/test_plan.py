@@ -78,14 +78,6 @@ def test_an_index_and_its_place_determine_each_other(points, repeats, specimens,
     assert found.split == split_of(made, found.specimen_id)
 
 
-def test_all_records_are_different_places():
-    made = design(repeats=2, operating_points=[{"speed_hz": 30, "torque_nm": 60}] * 3)
-    records = list(plan(made))
-    assert [record.record_id for record in records] == list(range(20 * 2 * 3 * 2))
-    places = {(r.specimen_id, r.state_id, r.operating_point_id, r.repeat) for r in records}
-    assert len(places) == len(records)
-
-
 def specimens_of(made: SetDesign, split: str) -> tuple[int, ...]:
     return tuple(i for i in range(made.specimens) if split_of(made, i) == split)
 
