@@ -7,14 +7,11 @@ from __future__ import annotations
 
 import contextlib
 import shutil
-import signal
 import sys
 import tempfile
-import time
-import traceback
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 
@@ -23,12 +20,12 @@ import yaml
 import siggen
 from benchmarks.row import Row, duration_text
 from benchmarks.shipped import QUICKSTART, shipped
-from siggen.errors import EXIT_MISMATCH, EXIT_USAGE, SiggenError, VerificationError
+from siggen.errors import VerificationError
 from siggen.gearbox.design import stored_design
 from tests.faults.changed_sets import SECRET, change
+from tests.faults.mutations import Case, judged
 
 COUNT, QUICK_COUNT = 2_000, 40
-LIMIT_S = 120
 SAID_EVERY = 50
 OVERRIDES = ("specimens=6", "repeats=1", "duration_s=0.4", "internals={quantities: [mesh_force_n]}")
 FACTS = {
@@ -43,15 +40,6 @@ FACTS = {
 }
 
 Reader = Callable[[Path, Path], None]
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """What a reader did with a set: 'accepted', 'refused', 'raw', 'hang', 'outside' or 'leaked'."""
-
-    what: str
-    message: str
-    seconds: float
 
 
 def rows(*, quick: bool) -> Iterator[Row]:
@@ -69,20 +57,20 @@ def outcome_rows(place: Path, whole: Path, asked: Mapping[str, Reader], count: i
     found: dict[str, Counter[str]] = {name: Counter() for name in asked}
     longest = dict.fromkeys(asked, 0.0)
     for name, reader in asked.items():
-        if (outcome := workshop.tried(lambda _folder: None, reader)).what != "accepted":
+        if (outcome := workshop.tried(lambda _folder: None, reader)).outcome != "accepted":
             raise RuntimeError(f"{name} does not take the unchanged set: {outcome.message}")
     for number in range(count):
         for name, reader in asked.items():
             outcome = workshop.tried(lambda folder, number=number: change(folder, Random(f"{seed} {number}")), reader)
-            found[name][outcome.what] += 1
+            found[name][outcome.outcome] += 1
             longest[name] = max(longest[name], outcome.seconds)
-            if outcome.what not in {"accepted", "refused"}:
-                sys.stderr.write(f"{outcome.what}: change {number}, {name}: {outcome.message}\n")
+            if outcome.outcome not in {"accepted", "refused"}:
+                sys.stderr.write(f"{outcome.outcome}: change {number}, {name}: {outcome.message}\n")
         if (number + 1) % SAID_EVERY == 0:
             sys.stderr.write(f"{number + 1} of {count} changed sets\n")
     for name, outcomes in found.items():
         measured = f"{outcomes['refused']} refused in words, {outcomes['accepted']} taken"
-        others = ", ".join(f"{what}: {outcomes[what]}" for what in ("raw", "hang", "outside", "leaked"))
+        others = ", ".join(f"{what}: {outcomes[what]}" for what in ("traceback", "hang", "outside", "leaked"))
         met = outcomes["accepted"] + outcomes["refused"] == count
         longest_text = f"longest {duration_text(longest[name])} of CPU"
         yield Row(f"{count} changed sets, {name}", f"{measured}, {longest_text}", others, None, "no other", met)
@@ -162,15 +150,15 @@ class Workshop:
         (place / "facts.yaml").write_text(yaml.safe_dump(FACTS))
         self._around = self._files()
 
-    def tried(self, changed: Callable[[Path], None], reader: Reader) -> Outcome:
-        """Return what a reader does with a changed copy of the set."""
+    def tried(self, changed: Callable[[Path], None], reader: Reader) -> Case:
+        """Return what a reader does with a changed copy of the set; 'outside' and 'leaked' are outcomes, too."""
         folder, out = self._place / "set", self._place / "out"
         shutil.copytree(self._whole, folder)
         changed(folder)
         own = {path for path in folder.rglob("*") if path.is_symlink()}
-        started_s = time.process_time()
-        what, message = self._outcome(lambda: reader(folder, out))
-        seconds = time.process_time() - started_s
+        with contextlib.redirect_stdout(None):
+            case = judged(str(folder), lambda: reader(folder, out))
+        what, message = case.outcome, case.message
         written = [path for top in self._place.glob("*") for path in (top, *top.rglob("*")) if path not in own]
         if self._files() != self._around:
             what, message = "outside", "a file beside the set was changed"
@@ -180,7 +168,7 @@ class Workshop:
         for left in self._place.glob("out*"):
             shutil.rmtree(left) if left.is_dir() else left.unlink()
         shutil.rmtree(self._place / "set_table", ignore_errors=True)
-        return Outcome(what, message, seconds)
+        return replace(case, outcome=what, message=message)
 
     def _files(self) -> dict[str, bytes]:
         """Return what lies beside the set and what readers may write."""
@@ -190,29 +178,3 @@ class Workshop:
 
     def _holds_secret(self, path: Path) -> bool:
         return path.parent.name != "canary" and path.is_file() and SECRET in path.read_bytes()
-
-    @staticmethod
-    def _outcome(work: Callable[[], object]) -> tuple[str, str]:
-        before = signal.signal(signal.SIGALRM, _too_long)
-        signal.alarm(LIMIT_S)
-        try:
-            with contextlib.redirect_stdout(None):
-                work()
-        except SiggenError as error:
-            return "refused" if error.exit_code in {EXIT_USAGE, EXIT_MISMATCH} else "raw", str(error)
-        except _TooLong:
-            return "hang", traceback.format_exc()
-        except Exception:
-            return "raw", traceback.format_exc()
-        finally:
-            signal.alarm(0)
-            signal.signal(signal.SIGALRM, before)
-        return "accepted", ""
-
-
-class _TooLong(BaseException):
-    """Not an Exception, so that nothing on the way swallows it."""
-
-
-def _too_long(_number: int, _frame: object) -> None:
-    raise _TooLong

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from random import Random
 
 from benchmarks.row import Row, duration_text
-from siggen.errors import EXIT_USAGE, SiggenError
+from siggen.errors import EXIT_MISMATCH, EXIT_USAGE, SiggenError
 
 SAID_EVERY = 100
-LIMIT_S = 60.0
+LIMIT_S = 120.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ def judged(text: str, work: Callable[[], object], cpu_limit_s: float | None = No
     try:
         work()
     except SiggenError as error:
-        outcome, message = "refused" if error.exit_code == EXIT_USAGE else "traceback", str(error)
+        outcome, message = "refused" if error.exit_code in {EXIT_USAGE, EXIT_MISMATCH} else "traceback", str(error)
     except _TooLong:
         outcome, message = "hang", traceback.format_exc()
     except Exception:
