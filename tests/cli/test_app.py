@@ -14,7 +14,6 @@ from typer.testing import CliRunner
 
 from siggen.cli.app import COMMANDS, app, main
 from siggen.cli.inspect import View
-from siggen.errors import UsageError, VerificationError
 
 SLOW = ("numpy", "scipy", "numba", "pyarrow", "pydantic", "yaml", "matplotlib")
 
@@ -102,14 +101,6 @@ def test_help_loads_nothing_slow():
     assert found.stdout.strip() == "[]"
 
 
-@pytest.mark.parametrize(("error", "code"), [(UsageError("no such set"), 2), (VerificationError("differs"), 4)])
-def test_known_errors_become_their_message_and_exit_code(monkeypatch, capsys, error, code):
-    assert run_main(monkeypatch, error) == code
-    captured = capsys.readouterr()
-    assert captured.err == f"siggen: {error}\n"
-    assert captured.out == ""
-
-
 def test_an_interruption_has_its_own_exit_code(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["siggen", "verify", "runs/quickstart"])
     assert run_main(monkeypatch, KeyboardInterrupt()) == 130
@@ -124,22 +115,6 @@ def test_too_little_memory_is_said_with_how_to_go_on(monkeypatch, capsys):
     assert capsys.readouterr().err == (
         "siggen: not enough memory; finished shards stay, and the same command goes on from there\n"
     )
-
-
-def test_an_unexpected_error_is_one_line_that_says_how_to_learn_more(monkeypatch, capsys):
-    monkeypatch.delenv("SIGGEN_TRACEBACK", raising=False)
-    assert run_main(monkeypatch, ZeroDivisionError("division by zero")) == 1
-    lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 1
-    assert "ZeroDivisionError: division by zero" in lines[0]
-    assert "SIGGEN_TRACEBACK=1" in lines[0]
-
-
-def test_an_unexpected_error_is_raised_where_details_are_wanted(monkeypatch):
-    monkeypatch.setenv("SIGGEN_TRACEBACK", "1")
-    monkeypatch.setattr(typer.Typer, "__call__", lambda *_, **__: 1 / 0)
-    with pytest.raises(ZeroDivisionError):
-        main()
 
 
 def test_a_wrong_configuration_is_reported_on_stderr_without_a_traceback():

@@ -29,15 +29,6 @@ def test_a_set_that_is_as_promised_ends_with_0(folder: Path) -> None:
     assert "as its manifest promises" in result.stdout
 
 
-def test_what_differs_comes_with_what_repairs_it(folder: Path) -> None:
-    (folder / "README.md").write_text("x")
-    (folder / "data" / "x.parquet").touch()
-    said = CliRunner().invoke(app, ["verify", str(folder)]).stderr
-    assert f"to repair it: rm {folder}/data/x.parquet\n" in said
-    assert f"\nrm {folder}/README.md\n" in said
-    assert f"siggen generate {folder}/config.yaml --out {folder}" in said
-
-
 def test_json_names_what_differs_and_the_exit_code_is_4(folder: Path) -> None:
     (folder / "README.md").write_text("x")
     result = CliRunner().invoke(app, ["verify", str(folder), "--json"])

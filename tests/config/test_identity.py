@@ -19,11 +19,6 @@ def reordered(value):
     return [reordered(item) for item in value] if isinstance(value, list) else value
 
 
-def test_identity_is_a_sha256():
-    assert len(config().identity) == 64
-    assert int(config().identity, 16) >= 0
-
-
 @given(st.integers(1, 10**7))
 def test_more_specimens_are_the_same_set(specimens):
     assert config(specimens=specimens).identity == config().identity
@@ -74,13 +69,8 @@ CHANGES = [
 ]
 
 
-@pytest.mark.parametrize(("path", "value"), CHANGES)
-def test_everything_else_changes_the_identity(path, value):
-    assert config(**{path: value}).identity != config().identity
-
-
-def test_changes_all_differ_from_each_other():
-    identities = [config(**{path: value}).identity for path, value in CHANGES]
+def test_everything_else_changes_the_identity():
+    identities = [config().identity, *(config(**{path: value}).identity for path, value in CHANGES)]
     assert len(set(identities)) == len(identities)
 
 

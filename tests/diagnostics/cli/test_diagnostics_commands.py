@@ -52,18 +52,6 @@ def test_help_loads_nothing_heavy() -> None:
     assert found.stdout.strip() == "[]"
 
 
-@pytest.mark.parametrize("command", ["indicators", "audit", "report"])
-def test_a_folder_without_a_set_is_a_usage_error(
-    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    out = {"indicators": ["--out", "x.csv"], "audit": ["--out", "y"], "report": []}[command]
-    assert run(monkeypatch, command, str(tmp_path / "nothing"), *out) == 2
-    error = capsys.readouterr().err
-    assert error.startswith("siggen-diagnostics: ")
-    assert "nothing" in error
-    assert "Traceback" not in error
-
-
 def test_missing_extra_names_the_line_that_installs_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
