@@ -195,7 +195,7 @@ def forces(damage: Damage, cell_widths: float) -> np.ndarray:
     teeth, options = StiffnessOptions(), TableOptions(4e3, cell_widths=cell_widths)
     row, points = kind_row(PAIR, teeth, options, 257), np.arange(2, 255, 2)
     if damage:
-        row = kind_row(PAIR, teeth, options, 257, pits_of_kind(damage, pair_kinds(PAIR, damage)[1]), row)
+        row = kind_row(PAIR, teeth, options, 257, pits_of_kind(damage, pair_kinds(damage)[1]), row)
     slices = face_slices(PAIR, options)
     faces = row_faces(table_solver(PAIR, teeth, options, np.zeros(slices)), row, points)
     found = []
