@@ -81,15 +81,15 @@ LOCK := compile pyproject.toml --constraint constraints.txt --generate-hashes --
 LOWEST := compile pyproject.toml --extra diagnostics --resolution lowest-direct --universal --python-version 3.11.5 --no-header --no-annotate --no-emit-index-url
 locks: $(STAMP)
 	$(PYTHON) -m venv $(VENV)/locks
-	$(VENV)/locks/bin/python -m pip install -q uv
+	$(VENV)/locks/bin/python -m pip install -q -c constraints.txt uv
 	$(VENV)/locks/bin/uv pip $(LOCK) --output-file locks/siggen.txt
-	$(VENV)/locks/bin/uv pip $(LOCK) --all-extras --output-file locks/all.txt
+	$(VENV)/locks/bin/uv pip $(LOCK) --all-extras --group pyproject.toml:release --output-file locks/all.txt
 	$(VENV)/locks/bin/uv pip $(LOWEST) --output-file locks/lowest.txt
 
 # Known holes of all locked and of the lowest versions, asked of the public package index: needs the network.
 holes:
 	$(PYTHON) -m venv $(VENV)-holes
-	$(VENV)-holes/bin/python -m pip install -q pip-audit
+	$(VENV)-holes/bin/python -m pip install -q -c constraints.txt pip-audit
 	$(VENV)-holes/bin/pip-audit --strict --no-deps --disable-pip --requirement locks/all.txt
 	$(VENV)-holes/bin/pip-audit --strict --no-deps --disable-pip --requirement locks/lowest.txt
 

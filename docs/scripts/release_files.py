@@ -22,6 +22,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 LOCK = ROOT / "locks" / "siggen.txt"
+PINNED = ("-c", str(ROOT / "constraints.txt"))
 COMMANDS = re.compile(r"^#+ `(siggen[a-z -]*)`$", re.MULTILINE)
 """Headings of the page of commands, which has all of them: a test compares it with the programs."""
 SMALL = ("--set", "specimens=1", "--set", "duration_s=0.2")
@@ -30,7 +31,7 @@ SMALL = ("--set", "specimens=1", "--set", "duration_s=0.2")
 def made(folder: Path, finished: Path, page: Path, tools: Path) -> None:
     """Write all files of a release into a folder; `tools` is where what builds them gets an environment of its own."""
     run([sys.executable, "-m", "venv", str(tools)])
-    run([str(tools / "bin/python"), "-m", "pip", "install", "--quiet", "build", "cyclonedx-bom"])
+    run([str(tools / "bin/python"), "-m", "pip", "install", "--quiet", *PINNED, "build", "cyclonedx-bom"])
     run([str(tools / "bin/python"), "-m", "build", "--outdir", str(folder), str(ROOT)])
     (archive,) = folder.glob("*.tar.gz")
     listed = folder / archive.name.replace(".tar.gz", ".cdx.json")

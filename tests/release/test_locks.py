@@ -8,6 +8,7 @@ import tomllib
 from tests.house.source_tree import ROOT
 
 PIN = re.compile(r"^([A-Za-z0-9._-]+)==([^\s;\\]+)", re.MULTILINE)
+PINNED = re.compile(r"constraints\.txt|PINNED|locks/|--no-deps|--require-hashes")
 INDEX = re.compile(r"--(?:extra-)?index-url|--find-links|--trusted-host|^index-url|^find-links", re.MULTILINE)
 
 
@@ -33,11 +34,20 @@ def test_locks_and_constraints_agree() -> None:
 
 
 def test_every_dependency_of_the_project_is_locked() -> None:
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    content = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    project, groups = content["project"], [one for group in content["dependency-groups"].values() for one in group]
     extras = [entry for entries in project["optional-dependencies"].values() for entry in entries]
-    for wanted, lock in ((project["dependencies"], "locks/siggen.txt"), (extras, "locks/all.txt")):
+    for wanted, lock in ((project["dependencies"], "locks/siggen.txt"), ([*extras, *groups], "locks/all.txt")):
         named = {re.sub(r"[-_.]+", "-", re.match(r"[A-Za-z0-9._-]+", entry)[0]).lower() for entry in wanted}
         assert named - set(pins(lock)) == set()
+
+
+def test_every_tool_is_installed_at_its_pin() -> None:
+    for name in ("Makefile", "docs/scripts/release_files.py"):
+        text = (ROOT / name).read_text(encoding="utf-8").replace('", "', " ")
+        installs = [line for line in text.splitlines() if "pip install" in line]
+        assert installs
+        assert [line for line in installs if not PINNED.search(line)] == []
 
 
 def test_no_file_that_installs_names_an_index() -> None:
