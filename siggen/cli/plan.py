@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from siggen.sets.trial import SetTrial
 
 
+WIDEST = 1000
+"""Columns of a table that a pipe takes."""
 LONGEST_NAME = 16
 """Of a state that stands on one line of a table."""
 NOTES = ("size_notes", "stiffness_notes", "torque_notes", "damage_notes", "state_notes", "shaft_notes")
@@ -79,7 +81,7 @@ def plan(
         return
     console = Console()
     console.print(_overview(summary))
-    console.print(_states(summary) if summary["life"] is None else life_table(summary["life"]))
+    _print_whole(console, _states(summary) if summary["life"] is None else life_table(summary["life"]))
     for sentence in summary["implausible"]:
         console.print(printable(f"implausible: {sentence}"), highlight=False, markup=False, style="yellow")
     for state in summary["states"]:
@@ -111,6 +113,13 @@ def _tried(design: SetDesign, gearboxes: int | None) -> SetTrial | None:
         return trial.trial(design, gearboxes, progress)
 
 
+def _print_whole(console: Console, table: Table) -> None:
+    """Print a table as wide as it is where nobody looks at a terminal: a pipe has no width to cut it at."""
+    from rich.console import Console
+
+    (console if console.is_terminal else Console(width=WIDEST)).print(table)
+
+
 def _print_trial(console: Console, found: SetTrial | None) -> None:
     """Print which share of every state would be lost, and what to do where that is more than a run allows."""
     from rich.table import Column, Table
@@ -138,7 +147,7 @@ def _print_trial(console: Console, found: SetTrial | None) -> None:
             damage = (_percent(state.stiffness_loss), through, state.found)
         lost = (f"{state.lost} of {state.tried}", f"{low:.0%} to {high:.0%}") if state.tried else ("not tried", "")
         table.add_row(state.state, *lost, *damage)
-    console.print(table)
+    _print_whole(console, table)
     for state in (state for state in tried if state.found == "hardly"):
         sentence = (
             f"{state.state}: will hardly be found: {_percent(state.area_share)} of the flank, "
