@@ -56,7 +56,7 @@ def baseline(
 
     require_packages("a machine", "jinja2")
     sources = recordings_of(healthy)
-    read = recording.read(sources[0])
+    read = recording.read(sources[0], gears.teeth)
     train, facts, span = gears.train(read, "--teeth"), read.facts(), read.speed_range_hz()
     first = first_readable(sources, facts)
     names = tuple(facts.columns) or channel_names(first)

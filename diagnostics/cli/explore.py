@@ -194,7 +194,7 @@ def _recordings_page(
         name = folder.resolve().name
     else:
         gears, said = described
-        read = said.read(recordings_of(files)[0])
+        read = said.read(recordings_of(files)[0], gears.teeth)
         train = gears.train(read, f"{files[0]}: teeth unknown")
         shown = of_files(files, train, read.facts(), read.speed_range_hz(), terminal_stage)
         name = ", ".join(Path(target).name for target in files[:3])

@@ -146,7 +146,7 @@ def _of_recordings(
 
     require_packages("the page of indicators", "matplotlib")
     sources = recordings_of(targets)
-    read = recording.read(sources[0])
+    read = recording.read(sources[0], gears.teeth)
     train = gears.train(read, f"{targets[0]}: teeth unknown")
     facts, speed_range_hz = read.facts(), read.speed_range_hz()
     results = []

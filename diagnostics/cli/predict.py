@@ -149,7 +149,7 @@ def _by_model(
         loaded = load_model(folder, load_indicators(indicator))
         check_judges(loaded, referenced=bool(healthy.reference))
     sources, facts = recordings_of(file), loaded.facts
-    reading = recording.read(sources[0])
+    reading = recording.read(sources[0], gears.teeth)
     trained = f" (this model was trained on {' or '.join(f'{a},{b}' for a, b in facts.teeth)})"
     pair, span = _teeth(sources[0][0], gears.said(reading), trained), reading.speed_range_hz()
     references = _references(healthy, reading, facts.channels, facts.units)
@@ -181,7 +181,7 @@ def _by_network(
 
         shipped_network()
     sources = recordings_of(file)
-    reading = recording.read(sources[0])
+    reading = recording.read(sources[0], gears.teeth)
     pair, span = _teeth(sources[0][0], gears.said(reading), ""), reading.speed_range_hz()
     references = _references(healthy, reading, None, ())
     found = _asked(sources, reading, None, (), lambda read: gearbox_answer(read, pair, span, references))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
@@ -54,15 +54,19 @@ class RecordingOptions:
         ),
     ] = None
 
-    def read(self, first: Source) -> SaidReading:
+    def read(self, first: Source, teeth: str | None = None) -> SaidReading:
         """Return how recordings are read, by these options and the rig file, whose words options replace.
+
+        `teeth` were given by an option: a rig file that is written holds them.
 
         Raises
         ------
         UsageError
             If there was no such rig file; it is written then, with the columns of the first recording.
         """
-        return SaidReading(said_by(self.rig, first), self.fs, self.speed)
+        fs = None if self.fs is None else f"{self.fs:g}"
+        given = {"teeth": teeth, "fs_hz": fs, "speed": self.speed}
+        return SaidReading(said_by(self.rig, first, given), self.fs, self.speed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,8 +143,8 @@ class GearOptions:
         return pair_train(two_gears(said))
 
 
-def said_by(rig: Path | None, first: Source) -> RigFile:
-    """Return what a rig file says; nothing without one.
+def said_by(rig: Path | None, first: Source, given: Mapping[str, str | None] | None = None) -> RigFile:
+    """Return what a rig file says; nothing without one. `given`: what a file that is written holds, by its keys.
 
     Raises
     ------
@@ -153,7 +157,7 @@ def said_by(rig: Path | None, first: Source) -> RigFile:
         return RigFile()
     if rig.exists():
         return read_rig_file(rig)
-    write_rig_file(rig, first)
+    write_rig_file(rig, first, {name: text for name, text in (given or {}).items() if text})
     raise UsageError(f"--rig {rig}: was not there; written with the columns of {first[0]}. Fill it in, and run again")
 
 
@@ -235,7 +239,7 @@ def two_gears(said: str) -> tuple[int, int]:
         If they are not two whole numbers from 3 on.
     """
     allowed = "two whole numbers from 3 on, such as 18,47, or the YAML file of a configuration"
-    first, second = two_numbers(said, "--teeth", allowed)
+    first, second = two_numbers(",".join(re.split("[,/]", said)), "--teeth", allowed)
     if min(first, second) < 3 or first % 1 or second % 1:
         raise UsageError(f"--teeth: received {said}; allowed are {allowed}")
     return int(first), int(second)

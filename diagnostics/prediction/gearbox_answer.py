@@ -39,6 +39,7 @@ LONGEST_GAP = 1.5
 FEWEST_MESH = 4.0
 """Power of mesh lines over that of noise there, from which on there is a mesh: noise alone gives 1 within 0.5."""
 SIDES = ("alone", "beside healthy recordings")
+WITHOUT_TACHO = "healthy recordings were left out, since they need a tacho"
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,13 +98,15 @@ class GearboxAnswer:
 
     @property
     def headline(self) -> str:
-        """What was found, in one line."""
+        """What was found, in one line; first that healthy recordings were left out."""
+        return f"{WITHOUT_TACHO}; {self._found}" if WITHOUT_TACHO in self.notes else self._found
+
+    @property
+    def _found(self) -> str:
         if self.reasons:
             return f"{UNTOLD}: {self.reasons[0]}"
         if not self.said:
-            return (
-                f"{NOTHING}; {percent(self.unseen)} of damaged records of the kinds and sizes of training look no worse"
-            )
+            return f"{NOTHING}; of 100 damaged records of training {_of_100(self.unseen)} look as healthy as this one"
         kind, gear = (max(of, key=lambda name: of[name]) for of in (self.kinds, self.gears))
         return (
             f"{DAMAGE}, most like {kind} ({percent(self.kinds[kind])}) of the {gear} ({percent(self.gears[gear])}); "
@@ -121,7 +124,7 @@ class GearboxAnswer:
             (f"{shaft.name} speed", f"{self.pulses.speed_hz:.4f} Hz ({self.pulses.origin}); mesh {mesh_hz:.2f} Hz"),
             (
                 "log odds of damage",
-                f"{self.odds:.2f}; {percent(self.as_odd)} of the sound records of the limit reach it",
+                f"{self.odds:.2f}; of 100 sound records {_of_100(self.as_odd)} look at least as bad",
             ),
         ]
         if self.verdict == DAMAGE:
@@ -133,7 +136,7 @@ class GearboxAnswer:
             ]
         names = ("distance of averages", "farthest number", "distance in network")
         for name, off, most in zip(names, self.distances, self.farthest, strict=True):
-            found.append((name, f"{off:.2f}, at most {most:.2f}"))
+            found.append((name, f"{off:.2f}; above {most:.2f} it cannot tell"))
         found += [("cannot tell because", reason) for reason in self.reasons]
         return [*found, *(("note", note) for note in self.notes)]
 
@@ -161,6 +164,10 @@ class GearboxAnswer:
             "pieces": self.pieces,
             "notes": list(self.notes),
         }
+
+
+def _of_100(share: float) -> str:
+    return f"{100 * share:.0f}"
 
 
 def _shares(of: Mapping[str, float]) -> str:
@@ -200,7 +207,7 @@ def gearbox_answer(
         _check_reference(recording, other)
     notes = []
     if healthy and any(own.angle is not None for own in (pulses, *(found[1] for found in healthy))):
-        notes.append("without a tacho healthy recordings cannot be laid over a recording: seen alone")
+        notes.append(WITHOUT_TACHO)
         healthy = []
     reasons = [*_uncovered(recording, slow, pulses, teeth, covered)]
     if not (mesh := float(np.median(mesh_over_noise(lines)))) >= FEWEST_MESH:

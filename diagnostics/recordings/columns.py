@@ -20,7 +20,11 @@ def signal_problem(signal: np.ndarray, column: str) -> str:
     """Return why a channel (n,) of a column cannot be used, or nothing: not finite, too large, constant, clipped."""
     broken = int(np.count_nonzero(~np.isfinite(signal)))
     if broken:
-        return f"{broken} of {signal.size} samples are not finite; cut the recording to where it is whole"
+        first = int(np.argmin(np.isfinite(signal))) + 1
+        return (
+            f"{broken} of {signal.size} samples are not finite, first row {first} of the data; delete all rows up to "
+            "the last of them, or all from the first on"
+        )
     if signal.size == 0 or signal.min() == signal.max():
         return f"constant over all {signal.size} samples; check sensor and cable, or name another column"
     largest = float(np.abs(signal).max())

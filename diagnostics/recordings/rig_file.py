@@ -11,6 +11,8 @@ tacho_pulses: 1
 from __future__ import annotations
 
 import json
+import os
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from math import inf
@@ -121,6 +123,10 @@ KEYS = {
 }
 
 
+def _plain(text: str) -> bool:
+    return re.fullmatch(r"[\w.,/-]+", text) is not None
+
+
 def read_rig_file(file: Path) -> RigFile:
     """Return what a rig file says.
 
@@ -150,8 +156,8 @@ def read_rig_file(file: Path) -> RigFile:
     return RigFile(said, teeth, found.get("speed"), found.get("torque_nm"))
 
 
-def write_rig_file(file: Path, source: Source) -> None:
-    """Write a rig file with the channels of a recording; what else it may say stands in comments.
+def write_rig_file(file: Path, source: Source, given: Mapping[str, str] | None = None) -> None:
+    """Write a rig file with the channels of a recording and what is given by its keys; all else stands in comments.
 
     Raises
     ------
@@ -172,6 +178,10 @@ def write_rig_file(file: Path, source: Source) -> None:
     for name, key in KEYS.items():
         if name == "channels":
             lines.append(f"channels: {{{shown}}}    # {key.comment}; take away those that are no vibration")
+        elif text := (given or {}).get(name):
+            if text.endswith((".yaml", ".yml")):  # a rig file names its neighbours
+                text = Path(os.path.relpath(text, file.parent)).as_posix()
+            lines.append(f"{name}: {text if _plain(text) else json.dumps(text)}    # {key.comment}")
         else:
             lines.append(f"# {name}: {key.example}    # {key.comment}")
     write_file(file, "\n".join([*lines, ""]).encode())

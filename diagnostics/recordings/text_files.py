@@ -409,7 +409,7 @@ def _first_bad(path: Path, lines: list[str], first: int, block: TextBlock, names
         )
         return (
             f"{path}: cannot be read as a table of numbers: line {k + 1}, column {names[bad] or bad + 1}: "
-            f"{cells[bad][:40]!r} is no number"
+            f"{cells[bad][:40]!r} is no number; delete all lines before or behind it"
         )
     return ""
 

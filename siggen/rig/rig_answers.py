@@ -63,7 +63,7 @@ def rig_of(
         If something is missing, is no number, or lies outside `LIMITS`.
     """
     refuse_missing(missing_answers(answers))
-    first, second = _two("teeth", answers["teeth"])
+    first, second = _two("teeth", ",".join(re.split("[,/]", answers["teeth"])))  # pages write 25/56
     teeth = round(first), round(second)
     if teeth != (first, second):
         raise _wrong("teeth", answers["teeth"], "two whole numbers with a comma between, pinion first")

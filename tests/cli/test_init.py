@@ -78,7 +78,7 @@ def test_all_digits_that_a_user_gives_are_written(tmp_path: Path) -> None:
 def test_a_speed_in_rpm_is_that_in_hz_and_face_width_and_torque_are_proposed(tmp_path: Path) -> None:
     file = tmp_path / "rig.yaml"
     made = command(
-        "siggen", "init", "--teeth", "32,80", "--module", "1.5", "--speed", "1200rpm,1450/60", "--out", str(file)
+        "siggen", "init", "--teeth", "32/80", "--module", "1.5", "--speed", "1200rpm,1450/60", "--out", str(file)
     )
     assert made.returncode == 0, made.stderr
     config = load_config(file)

@@ -148,7 +148,7 @@ def texts() -> list[Dialect]:
         text("rpm.csv", _lines(["time,left [g],right [g],rpm"], more=[f"{1440 + k % 7}" for k in range(SAMPLES)]), G),
         text("label.csv", _lines(["time,left [g],right [g],state"], more=["healthy"] * SAMPLES), G),
         text("doubled.csv", _lines(["time,left,left"]), refused=r"line 1: 2 columns are called left \(columns 2, 3\)"),
-        text("text_inside.csv", bad, refused=r"line 701, column left: 'overload' is no number"),
+        text("text_inside.csv", bad, refused=r"line 701, column left: 'overload' is no number; delete all lines"),
         text("short_line.csv", short, refused=r"line 701 has 2 cells, those around it 3"),
         text("names_twice.csv", _lines(["time,left,right", "here,there,where"]), refused="could both be names"),
         text("two_times.csv", _lines(["time,left [g],right [g],zeit"], more=[f"{2 * t:.6f}" for t in TIME_S]),

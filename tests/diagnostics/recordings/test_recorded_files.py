@@ -131,7 +131,10 @@ def test_pulses_of_a_sampled_tacho_lie_between_samples(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("spoil", "message"),
     [
-        (lambda x: np.where(np.arange(x.size) == 7, np.nan, x), "1 of 4000 samples are not finite"),
+        (
+            lambda x: np.where(np.arange(x.size) == 7, np.nan, x),
+            "1 of 4000 samples are not finite, first row 8 of the data",
+        ),
         (np.zeros_like, "constant over all 4000 samples"),
         (lambda x: np.clip(x, -4.0, 4.0), "stand clipped"),
         (lambda x: (np.arange(x.size) % 80 < 8) * 5.0, r"100.00% of the samples stand at 0 or 5.*tacho: vertical"),

@@ -52,6 +52,14 @@ def test_a_call_that_lacks_something_leads_to_a_rig_file_that_is_written_and_fil
     assert f"pinion 25.0000 Hz, mesh 500.00 Hz (tacho); rms lid {rms:.2f}" in said
 
 
+def test_a_rig_file_that_is_written_holds_what_was_given(recording: Path) -> None:
+    rig = recording.with_name("new.yaml")
+    with pytest.raises(UsageError, match="was not there"):
+        run("indicators", recording, "--rig", rig, "--fs", FS_HZ, "--teeth", "20/31", "--speed", "20, 30")
+    found = read_rig_file(rig)
+    assert (found.teeth, found.speed, found.said["fs_hz"]) == ("20/31", "20, 30", FS_HZ)
+
+
 def test_options_replace_what_the_rig_file_says(recording: Path) -> None:
     rig = recording.with_name("rig.yaml")
     rig.write_text("{unit: g, tacho_pulses: 1, teeth: '10,31', fs_hz: 4000}", encoding="utf-8")
