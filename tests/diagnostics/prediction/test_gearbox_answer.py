@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ import pytest
 import diagnostics
 import siggen
 from diagnostics.cli.app import main
+from diagnostics.prediction.gearbox_answer import WITHOUT_TACHO, GearboxAnswer
 from diagnostics.records.state_classes import HEALTHY
 from diagnostics.training.shipped_network import DAMAGE, SHIPPED
 from tests.rig_file import rig_file
@@ -204,3 +206,12 @@ def test_the_weights_are_small_and_their_card_says_what_they_are_of() -> None:
     assert card["parameters"] <= 500_000
     assert card["gearboxes"] >= 2000
     assert {"seed", "families", "streams", "weights_sha256", "no_use", "scores_of_unseen_pairs"} <= card.keys()
+
+
+def test_the_first_line_says_that_healthy_recordings_were_left_out() -> None:
+    """And what shares of records mean, counted of a hundred."""
+    nothing: dict[str, Any] = {one.name: None for one in fields(GearboxAnswer)}
+    answer = GearboxAnswer(**nothing | {"reasons": (), "said": False, "unseen": 0.24, "notes": (WITHOUT_TACHO,)})
+    seen = "no damage seen; of 100 damaged records of training 24 look as healthy as this one"
+    assert replace(answer, notes=()).headline == seen
+    assert answer.headline == f"healthy recordings were left out, since they need a tacho; {seen}"
