@@ -71,6 +71,7 @@ class Dataset:
         self.manifest: dict[str, Any] = self.inventory.content
         self._ids: dict[str, np.ndarray] = {}
         self._tables: OrderedDict[str, pa.Table] = OrderedDict()
+        self._groups: dict[str, tuple[int, ...]] = {}
         self.config: dict[str, Any] = self._read_config()
         self.splits: tuple[str, ...] = tuple(s for s in SPLITS if s in self.inventory.splits)
         self.channels: tuple[ChannelColumn, ...] = self.inventory.channels
@@ -201,7 +202,8 @@ class Dataset:
 
     def row_groups(self) -> tuple[tuple[int, ...], ...]:
         """Return how many rows each row group of every shard has, in the order of the labels; siggen writes one."""
-        return tuple(group_rows(self.content(shard.file)) for shard in self.shards())
+        names = [shard.file for shard in self.shards()]
+        return tuple(self._groups.get(name) or group_rows(self.content(name)) for name in names)
 
     def shard_rows(self, shard: ListedShard, columns: Sequence[str] | None = None) -> pa.RecordBatch:
         """Return the rows of one shard with signals, by any process and in any order.
@@ -320,6 +322,7 @@ class Dataset:
             table = unpacked(content, columns, hashed=True)
             if columns is not None and not set(columns) <= set(table.column_names):
                 self._check_columns(columns_of(content), columns)
+            self._groups[name] = group_rows(content)
             check_form(table, form_of(name, self.inventory, table.column_names), asked=columns)
         except VerificationError as error:
             raise self._broken(name, str(error)) from error

@@ -66,6 +66,22 @@ def test_batches_have_at_most_the_rows_asked_for_and_lose_none(dataset: Dataset,
     assert np.array_equal(signals[0], dataset.record(first)[SIGNAL])
 
 
+def test_row_groups_of_what_was_read_are_known_without_a_second_reading(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole, asked, content = open_set(folder).row_groups(), list[str](), Dataset.content
+
+    def counted(self: Dataset, name: str) -> bytes:
+        asked.append(name)
+        return content(self, name)
+
+    monkeypatch.setattr(Dataset, "content", counted)
+    read = open_set(folder)
+    assert sum(batch.num_rows for batch in read.records()) == sum(map(sum, whole))
+    assert read.row_groups() == whole == tuple((shard.rows,) for shard in read.shards())
+    assert len(asked) == len(set(asked)) == 1 + len(whole)  # config.yaml, and every shard once
+
+
 def test_columns_are_those_asked_for(dataset: Dataset) -> None:
     assert dataset.labels(columns=["state", "record_id"]).column_names == ["state", "record_id"]
     assert SIGNAL not in dataset.labels().column_names
