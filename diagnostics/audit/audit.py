@@ -32,7 +32,7 @@ class Audit:
     Attributes
     ----------
     findings : tuple of Finding
-        Traps; empty for a set without any.
+        Leaks; empty for a set without any.
     verdict : str
         What they mean, in a sentence.
     realism : Realism, optional
@@ -94,7 +94,7 @@ class Audit:
 
     @property
     def tells_too_little(self) -> bool:
-        """Whether gearboxes are too few, or one class is missing, for a set without traps to have passed."""
+        """Whether gearboxes are too few, or one class is missing, for a set without leaks to have passed."""
         return bool(self.missing) or self.specimens < FEWEST_SPECIMENS or self.gearboxes_needed is not None
 
     def probes(self, state: str) -> dict[str, float]:

@@ -304,7 +304,7 @@ def audit_page(audit: Audit, dataset: Dataset, drawn: dict[str, bytes]) -> Page:
     """Return the page."""
     title = f"Audit of {dataset.path.name}"
     tone = "failed" if audit.findings or audit.tells_too_little else "passed"
-    parts: list[Block] = [Heading(title, 1), *summary_blocks(audit_summary(audit), tone), Heading("Traps")]
+    parts: list[Block] = [Heading(title, 1), *summary_blocks(audit_summary(audit), tone), Heading("Leaks")]
     parts.append(_findings_table(audit) if audit.findings else Paragraph(audit.verdict))
     if audit.realism:
         parts += [Heading("Against healthy gearboxes"), *_realism_parts(audit.realism, drawn)]
@@ -335,9 +335,9 @@ def _best_table(audit: Audit) -> TableBlock:
 
 
 def _findings_table(audit: Audit) -> TableBlock:
-    rows = [(one.trap, one.measured, one.bound, one.mend) for one in audit.findings]
-    caption = "Traps, what was measured, and how to correct the configuration."
-    return table(["Trap", "Measured", "Bound", "How to correct it"], rows, caption, text=True)
+    rows = [(one.leak, one.measured, one.bound, one.mend) for one in audit.findings]
+    caption = "Leaks, what was measured, and how to correct the configuration."
+    return table(["Leak", "Measured", "Bound", "How to correct it"], rows, caption, text=True)
 
 
 def _realism_parts(found: Realism, drawn: dict[str, bytes]) -> list[Block]:

@@ -22,10 +22,10 @@ from diagnostics.audit.bank import (
     bank_detections,
     chance_limit,
     damaged_states,
-    sham_traps,
+    sham_leaks,
     shams_found,
 )
-from diagnostics.audit.condition_traps import level_detectors
+from diagnostics.audit.condition_leaks import level_detectors
 from diagnostics.audit.detectability import (
     TARGETS,
     Detectability,
@@ -36,10 +36,10 @@ from diagnostics.audit.detectability import (
     waveform_change,
 )
 from diagnostics.audit.envelope import QuantityShare, Realism, realism
+from diagnostics.audit.leaks import separability_findings, verdict
 from diagnostics.audit.measured_set import MeasuredSet, measured_set
 from diagnostics.audit.reference_comparison import reference_comparison, reference_windows, synthetic_windows
 from diagnostics.audit.signal_detectors import NETWORK, PREPARED, signal_detectors
-from diagnostics.audit.traps import separability_findings, verdict
 from diagnostics.base.extras import missing_packages, require_packages
 from diagnostics.base.progress import Stage, silent_stage
 from diagnostics.base.single_thread import single_thread
@@ -178,14 +178,14 @@ def audit_set(
     with stage("measuring", int(dataset.labels(columns=["record_id"]).num_rows)) as advance:
         measured = measured_set(dataset, own, advance)
     seconds = (time.perf_counter() - started_s) / measured.checksums.shape[0]
-    with stage("traps", 1):
+    with stage("leaks", 1):
         findings = separability_findings(measured, seed)
     with stage("detectability", 1):
         found = _detections(measured, seed)
         best = best_indicators(measured.matrix(), seed)
     detected, chance, shams = _bank_on_signals(measured, seed, stage)
     found |= detected
-    findings += sham_traps(shams)
+    findings += sham_leaks(shams)
     compared = None if names_of(dataset)[0].planetary else realism(measured)
     beside = None
     if real is not None:

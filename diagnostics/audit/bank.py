@@ -35,7 +35,7 @@ DESIGN = Design(folds=4, owner=1000, deals=3, fewest=2)
 PERMUTATIONS = 499
 LEVEL = 0.95
 OWNER = 1000
-"""Owner of the permutations' generator: other traps have others."""
+"""Owner of the permutations' generator: other leaks have others."""
 BLOCK, GEARBOX, GEARBOXES = "block", "gearbox", "gearboxes"
 """What states are exchanged within; the last: whole gearboxes among each other."""
 
@@ -123,7 +123,7 @@ def bank_maxima(
 def gearboxes_needed(chance: ChanceLimit | None, specimens: int) -> int | None:
     """Return the least number of gearboxes that may tell; None where those that were judged do.
 
-    So few tell nothing where the strongest detector reaches by chance what a trap is accused of, 0.9. As many are
+    So few tell nothing where the strongest detector reaches by chance what a leak is accused of, 0.9. As many are
     needed as bring that limit down to the lowest AUC that counts as found, 0.75: its distance from 0.5 falls as one
     over the root of the gearboxes, as does the scatter of an AUC (Birnbaum and Klose 1957). Derived. An AUC ends at 1,
     so the number is the least.
@@ -301,7 +301,7 @@ def exceeded_by_chance(maxima: np.ndarray) -> float:
     return float(np.sort(maxima)[min(place, maxima.size) - 1])
 
 
-TRAP = "sham_told_from_healthy"
+LEAK = "sham_told_from_healthy"
 
 
 @dataclass(frozen=True, slots=True)
@@ -371,14 +371,14 @@ def _sham_found(asked: MeasuredSet, side: str, detectors: Sequence[Entry], state
     return ShamFound(state, side, name, auc, chance, {name: auc.value for auc, name in defined})
 
 
-def sham_traps(found: Sequence[ShamFound]) -> list[Finding]:
+def sham_leaks(found: Sequence[ShamFound]) -> list[Finding]:
     """Return a finding for every sham that detectors tell better than in any of the permutations.
 
     That happens to one of 500 sets without a leak, by each side.
     """
     return [
         Finding(
-            TRAP,
+            LEAK,
             f"{one.detector} tells {one.state}, damage without any effect, from healthy records with an AUC of "
             f"{one.auc.value:.2f} ({one.auc.low:.2f} to {one.auc.high:.2f})",
             f"in none of {PERMUTATIONS} permutations the strongest detector reaches as much",

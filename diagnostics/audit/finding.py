@@ -39,8 +39,8 @@ class Finding:
 
     Attributes
     ----------
-    trap : str
-        Which trap: a fixed word, such as `state_tied_to_sensors`.
+    leak : str
+        Which leak: a fixed word, such as `state_tied_to_sensors`.
     measured : str
         What was measured.
     bound : str
@@ -49,11 +49,11 @@ class Finding:
         How to change the configuration.
     """
 
-    trap: str
+    leak: str
     measured: str
     bound: str
     mend: str
 
     def line(self) -> str:
         """Return the finding on one line."""
-        return f"{self.trap}: {self.measured}. Bound: {self.bound}. To correct it: {self.mend}"
+        return f"{self.leak}: {self.measured}. Bound: {self.bound}. To correct it: {self.mend}"

@@ -19,7 +19,7 @@ def audit(
     *,
     strict: Annotated[
         bool,
-        typer.Option("--strict", help="End with exit code 4 after a trap, or with too few gearboxes to tell."),
+        typer.Option("--strict", help="End with exit code 4 after a leak, or with too few gearboxes to tell."),
     ] = False,
     reference: Annotated[
         Path | None,
@@ -40,10 +40,10 @@ def audit(
 ) -> None:
     """Check whether scores on a set measure the damage, and write audit.html and audit.json.
 
-    A trap is a property of the set that makes scores meaningless. Healthy records are compared with the ranges of
+    A leak is a property of the set that makes scores meaningless. Healthy records are compared with the ranges of
     measured healthy gearboxes.
 
-    Exit codes: 0 done, 2 no finished set, 4 with --strict if a trap was found or gearboxes are too few to tell.
+    Exit codes: 0 done, 2 no finished set, 4 with --strict if a leak was found or gearboxes are too few to tell.
 
     Example: siggen-diagnostics audit runs/quickstart --strict
     """
@@ -74,6 +74,6 @@ def audit(
         echo(f"note: {note}", err=True)
     echo(str(page), err=as_json)
     if strict and audited.findings:
-        raise VerificationError(f"{directory}: {counted(len(audited.findings), 'trap')} found (--strict)")
+        raise VerificationError(f"{directory}: {counted(len(audited.findings), 'leak')} found (--strict)")
     if strict and audited.tells_too_little:
         raise VerificationError(f"{directory}: not passed (--strict). {audited.verdict}")

@@ -37,7 +37,7 @@ exit code|meaning
 2|wrong usage or configuration
 3|some records failed: the set is usable and the manifest names them, unless `--allowed-loss` stopped the run; of \
 `check`: a recording cannot be compared
-4|`verify` found a difference, `check` a change, `audit --strict` a trap or too few gearboxes
+4|`verify` found a difference, `check` a change, `audit --strict` a leak or too few gearboxes
 130|interrupted; the same command goes on where it stopped
 """
 

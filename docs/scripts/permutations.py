@@ -5,8 +5,8 @@ follows from them among the records of every gearbox, TURNS times. So no label t
 decide anew which record is the reference, and the audit makes its own permutations. What does not depend on states is
 computed once: features of every record, and of its difference from every other one of its gearbox. Prints in how many
 turns the strongest detector on the signals, the bank counted as one test, has a p-value of 0.05 or less in the first
-state, and in how many the audit accuses the set of a trap, with exact 95 % limits (Clopper-Pearson). With `noise` for
-SET, sets of 24 gearboxes are drawn whose records are their gearbox's pattern and noise. Traps: 200 turns at most.
+state, and in how many the audit accuses the set of a leak, with exact 95 % limits (Clopper-Pearson). With `noise` for
+SET, sets of 24 gearboxes are drawn whose records are their gearbox's pattern and noise. Leaks: 200 turns at most.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ import numpy as np
 import siggen
 from diagnostics.audit.averaged_lines import line_array
 from diagnostics.audit.bank import chance_limit
+from diagnostics.audit.leaks import separability_findings
 from diagnostics.audit.measured_set import MeasuredSet, measured_set, reference_records
 from diagnostics.audit.signal_detectors import detectors_on, signal_detectors
-from diagnostics.audit.traps import separability_findings
 from diagnostics.base.single_thread import single_thread
 from diagnostics.judging.evaluation import Entry
 from diagnostics.signal.innovations import residual_lines
@@ -35,8 +35,8 @@ OF_STATE = (Role.TARGET, Role.CONSEQUENCE)
 """Roles of the labels that follow from the state."""
 
 LEVEL = 0.05
-MOST_TRAP_TURNS = 200
-"""Named traps take longer than the bank."""
+MOST_LEAK_TURNS = 200
+"""Named leaks take longer than the bank."""
 
 GEARBOXES, ORDERS, TEETH = 24, 362, 18
 """Of drawn sets."""
@@ -125,14 +125,14 @@ def share(count: int, turns: int) -> str:
     return f"{count} of {turns}, {count / turns:.1%} ({low:.1%} to {high:.1%})"
 
 
-def accused_of_traps(found: MeasuredSet, turns: int) -> None:
-    """Print how often the audit names a trap."""
+def accused_of_leaks(found: MeasuredSet, turns: int) -> None:
+    """Print how often the audit names a leak."""
     named, accused = Counter[str](), 0
     for turn in range(turns):
-        traps = [finding.trap for finding in separability_findings(with_permuted_states(found, turn), turn)]
-        accused += bool(traps)
-        named.update(traps)
-    print(f"accused of a trap: {share(accused, turns)} {dict(named)}", flush=True)
+        leaks = [finding.leak for finding in separability_findings(with_permuted_states(found, turn), turn)]
+        accused += bool(leaks)
+        named.update(leaks)
+    print(f"accused of a leak: {share(accused, turns)} {dict(named)}", flush=True)
 
 
 @single_thread()
@@ -158,7 +158,7 @@ def main(path: str, turns: int, states: list[str]) -> None:
     print(f"p-value of the bank on the signals at most {LEVEL}: {share(below, turns)}; median {np.median(found):.2f}; "
           f"{time.process_time() - begin:.0f} s of CPU", flush=True)  # fmt: skip
     if path != "noise":
-        accused_of_traps(chosen, min(turns, MOST_TRAP_TURNS))
+        accused_of_leaks(chosen, min(turns, MOST_LEAK_TURNS))
 
 
 if __name__ == "__main__":

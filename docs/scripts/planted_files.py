@@ -1,6 +1,6 @@
 """Leaks planted into the files of a set, and what the audit says: `planted_files.py SET FOLDER [--only ...]`.
 
-Copies the set into FOLDER, plants one leak at a time, seals the copy again, and looks for traps as
+Copies the set into FOLDER, plants one leak at a time, seals the copy again, and looks for leaks as
 `siggen-diagnostics audit` does; its detectors on the gears are left out, which accuse no damaged state. Prints
 Markdown: what was planted, what is found beyond the set as it is. The first row is that set. A copy is deleted when it
 is judged; what was found stays in FOLDER, and a kind that was judged there is not judged again.
@@ -19,8 +19,8 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))  # the leaks are those of the tests
 
 import siggen  # noqa: E402
+from diagnostics.audit.leaks import separability_findings  # noqa: E402
 from diagnostics.audit.measured_set import measured_set  # noqa: E402
-from diagnostics.audit.traps import separability_findings  # noqa: E402
 from diagnostics.base.single_thread import single_thread  # noqa: E402
 from tests.diagnostics.planted.fixed_leaks import FIXED_LEAKS  # noqa: E402
 from tests.diagnostics.planted.further_leaks import FURTHER_LEAKS  # noqa: E402
@@ -40,7 +40,7 @@ def findings(source: Path, folder: Path, leak: Leak) -> list[str]:
             shutil.rmtree(folder / name, ignore_errors=True)
         copy = planted_copy(source, folder / leak.name, leak)
         found = separability_findings(measured_set(siggen.open(copy)))
-        judged.write_text(json.dumps([finding.trap for finding in found]))
+        judged.write_text(json.dumps([finding.leak for finding in found]))
         shutil.rmtree(copy)
         shutil.rmtree(folder / f"{leak.name}_table", ignore_errors=True)
     return list(json.loads(judged.read_text()))

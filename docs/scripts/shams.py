@@ -1,6 +1,6 @@
 """What audits say of clean sets: `python docs/scripts/shams.py SET_audit ...`, of folders that `audit` wrote.
 
-Prints Markdown, a row for each set: the traps that were found, and the largest AUC of all detectors on its sham, alone
+Prints Markdown, a row for each set: the leaks that were found, and the largest AUC of all detectors on its sham, alone
 and beside a healthy record, with what the largest stays below in 95 % of 499 permutations. Networks count, though they
 are not permuted.
 """
@@ -25,13 +25,13 @@ def cell(found: dict[str, Any]) -> str:
 def row(folder: Path) -> str:
     """Return the row of a set."""
     audit = json.loads((folder / "audit.json").read_text(encoding="utf-8"))
-    traps = ", ".join(finding["trap"] for finding in audit["findings"]) or "none"
+    leaks = ", ".join(finding["leak"] for finding in audit["findings"]) or "none"
     cells = [", ".join(cell(one) for one in audit["shams"] if one["side"] == side) or "-" for side in SIDES]
-    return f"| `{audit['set']}` | {audit['specimens']} | {audit['records']} | {traps} | {' | '.join(cells)} |"
+    return f"| `{audit['set']}` | {audit['specimens']} | {audit['records']} | {leaks} | {' | '.join(cells)} |"
 
 
 if __name__ == "__main__":
-    print(f"| set | gearboxes | records | traps | {' | '.join(f'sham, {side}' for side in SIDES)} |")
+    print(f"| set | gearboxes | records | leaks | {' | '.join(f'sham, {side}' for side in SIDES)} |")
     print("|---" * 6 + "|")
     for name in sys.argv[1:]:
         print(row(Path(name)))

@@ -11,8 +11,8 @@ import pytest
 
 import siggen
 from diagnostics.audit.envelope import realism
+from diagnostics.audit.leaks import separability_findings
 from diagnostics.audit.measured_set import measured_set
-from diagnostics.audit.traps import separability_findings
 from siggen.checks.loading import load_config
 from siggen.checks.plausibility import implausible
 from siggen.config.inheritance import inherited
@@ -97,7 +97,7 @@ def test_healthy_records_of_the_bench_have_sidebands(tmp_path: Path) -> None:
     config = preset("bench", ("healthy",), specimens=4, duration_s=0.6)
     siggen.generate(config, tmp_path / "bench", executor="serial")
     measured = measured_set(siggen.open(tmp_path / "bench"))
-    assert "healthy_without_sidebands" not in [finding.trap for finding in separability_findings(measured)]
+    assert "healthy_without_sidebands" not in [finding.leak for finding in separability_findings(measured)]
     found = realism(measured)
     assert found is not None
     # -30 to -8 dB for nine tenths of channels measured. Of 24 gearboxes of bench 76 % lie inside (docs/understand/

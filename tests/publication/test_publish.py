@@ -157,12 +157,12 @@ def test_the_card_quotes_the_strongest_detector_of_the_audit_of_this_set_alone(k
         "severe": {"indicator": "fm4__x", "tried": 40, "auc_chosen_on_other_gearboxes": 0.98},
     }
     identity = siggen.open(kept).manifest["identity"]
-    verdict = "1 trap was found."  # as the audit writes it: the summary opens with it
+    verdict = "1 leak was found."  # as the audit writes it: the summary opens with it
     audit = {"identity": identity, "verdict": verdict, "summary": [verdict, "More."], "best_single_indicator": best}
     (tmp_path / "audit.json").write_text(json.dumps(audit))
     publish(kept, tmp_path / "set", facts_file(tmp_path), tmp_path)
     card = (tmp_path / "set/README.md").read_text()
-    assert "## Audit\n\nVerdict: 1 trap was found. More.\n\n" in card
+    assert "## Audit\n\nVerdict: 1 leak was found. More.\n\n" in card
     assert "| severe | `fm4__x` | 0.980 | 40 |\n| slight | `rms__x` | 0.710 | 40 |" in card
     entry = {"state": "severe", "chosen": "a band", "tried": 410, "auc": {"value": 0.99}}
     (tmp_path / "audit.json").write_text(json.dumps({**audit, "strongest": {"alone": {"states": [entry]}}}))

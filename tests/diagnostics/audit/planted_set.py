@@ -1,4 +1,4 @@
-"""Small sets with mesh lines, error sidebands per specimen, noise and pulses of damage; every trap can be planted."""
+"""Small sets with mesh lines, error sidebands per specimen, noise and pulses of damage; every leak can be planted."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class PlantedSet(ListedRoles):
 
 @dataclass(frozen=True)
 class Plant:
-    """What to plant; the defaults are a set without traps."""
+    """What to plant; the defaults are a set without leaks."""
 
     specimens: int = 12
     points: int = 2

@@ -11,7 +11,7 @@ import pytest
 from planted_set import Plant, PlantedSet, planted
 from scipy.io import wavfile
 
-from diagnostics.audit import bank, condition_traps, signal_detectors
+from diagnostics.audit import bank, condition_leaks, signal_detectors
 from diagnostics.cli.app import main
 from siggen.dataset import reading
 
@@ -29,7 +29,7 @@ def clean() -> PlantedSet:
 @pytest.fixture(autouse=True)
 def quick_bank(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few steps of training and few permutations: what they find is tested with the detectors."""
-    monkeypatch.setattr(condition_traps, "PERMUTATIONS", 19)
+    monkeypatch.setattr(condition_leaks, "PERMUTATIONS", 19)
     monkeypatch.setattr(bank, "PERMUTATIONS", 19)
     monkeypatch.setattr(signal_detectors, "SHOWN", 0)
     monkeypatch.setattr(signal_detectors, "FEWEST_EPOCHS", 1)
@@ -55,7 +55,7 @@ def test_a_finding_fails_with_strict(
     assert "healthy_without_sidebands" in shown.out
     assert "--strict" in shown.err
     numbers = json.loads((tmp_path / "audit.json").read_text())
-    assert [finding["trap"] for finding in numbers["findings"]] == ["healthy_without_sidebands"]
+    assert [finding["leak"] for finding in numbers["findings"]] == ["healthy_without_sidebands"]
 
 
 def test_a_clean_set_passes_strict_and_the_report_holds_every_part(
@@ -71,7 +71,7 @@ def test_a_clean_set_passes_strict_and_the_report_holds_every_part(
     assert capsys.readouterr().out.strip().endswith("audit.html")
     page = (tmp_path / "audit.html").read_text()
     for part in (
-        "No trap",
+        "No leak",
         "Against healthy gearboxes",
         "Spread between the sensors",
         "Best of",
@@ -99,7 +99,7 @@ def test_too_few_gearboxes_do_not_pass_and_no_file_names_a_length(
     assert numbers["findings"] == []
     assert numbers["gearboxes_needed"] > 10  # 4 (0.4 / 0.25)^2
     for text in (shown.out, page, json.dumps(numbers)):
-        assert "No trap was found" not in text
+        assert "No leak was found" not in text
         assert "is reached from" not in text
         assert "Interpolated damaged area" not in text
     areas = [entries["damaged_area_mm2_at_auc"] for entries in numbers["strongest"].values()]

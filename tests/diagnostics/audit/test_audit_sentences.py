@@ -11,7 +11,7 @@ from diagnostics.audit.audit_page import audit_summary, verdict_words
 from diagnostics.audit.audit_report import Audit
 from diagnostics.audit.bank import ChanceLimit, ShamFound, StateChance, gearboxes_needed
 from diagnostics.audit.detectability import BestIndicator, Detectability
-from diagnostics.audit.traps import verdict
+from diagnostics.audit.leaks import verdict
 from diagnostics.statistics.evaluation import Interval
 
 
@@ -25,7 +25,7 @@ BEST = {
     "mild": BestIndicator("fm4_pinion__x", Interval(0.7, 0.6, 0.8), 0.51, 820),
     "severe": BestIndicator("rms__x", Interval(0.97, 0.92, 1.0), 0.95, 820),
 }
-AUDIT = Audit((), "No trap.", None, {"indicators": ENTRIES}, (), 0.1, 96, 24, 2, 0, BEST)
+AUDIT = Audit((), "No leak.", None, {"indicators": ENTRIES}, (), 0.1, 96, 24, 2, 0, BEST)
 
 
 def test_the_strongest_detector_is_named_with_interval_and_number_and_lost_means_all_failed() -> None:
@@ -70,7 +70,7 @@ def test_what_a_detector_reaches_on_a_sham_is_no_damage() -> None:
 def test_one_gearbox_is_said_to_be_too_few() -> None:
     found = audit_summary(replace(AUDIT, specimens=1, records=4, channels=1, detections={"indicators": []}, best={}))
     assert len(found) == 2
-    assert "used 4\xa0records of 1\xa0specimen (gearboxes) in 1\xa0channel. Traps that only appear between" in found[1]
+    assert "used 4\xa0records of 1\xa0specimen (gearboxes) in 1\xa0channel. Leaks that only appear between" in found[1]
     assert "1\xa0gearbox" in verdict([], 1)
     assert "2\xa0gearboxes" in verdict([], 2)
     assert "As far as the audit can see" in verdict([], 4)
@@ -78,7 +78,7 @@ def test_one_gearbox_is_said_to_be_too_few() -> None:
     assert replace(AUDIT, specimens=24, missing="damaged").tells_too_little
 
 
-def test_where_chance_reaches_what_a_trap_is_accused_of_nothing_is_said_to_be_found() -> None:
+def test_where_chance_reaches_what_a_leak_is_accused_of_nothing_is_said_to_be_found() -> None:
     chance = ChanceLimit(1.0, 8, 100)
     few = replace(AUDIT, specimens=6, chance=chance, verdict=verdict([], 6, chance))
     found = audit_summary(few)

@@ -7,7 +7,7 @@ import pytest
 
 from diagnostics.audit.bank import DESIGN, permuted
 from diagnostics.audit.condition_layers import noise_excess
-from diagnostics.audit.condition_traps import sized_states, small_damage_detectors
+from diagnostics.audit.condition_leaks import sized_states, small_damage_detectors
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
 from diagnostics.audit.raw_records import RawColumns
 from diagnostics.judging.evaluation import held_out

@@ -9,10 +9,10 @@ import pyarrow as pa
 import pytest
 from planted_set import CHANNELS, FS_HZ, Plant, PlantedSet, measured, planted
 
-from diagnostics.audit import condition_traps
+from diagnostics.audit import condition_leaks
+from diagnostics.audit.leaks import repeated_runs, separability_findings
 from diagnostics.audit.measured_set import measured_set
 from diagnostics.audit.raw_records import raw_columns
-from diagnostics.audit.traps import repeated_runs, separability_findings
 from diagnostics.records.recording import recordings
 
 FADED = 48
@@ -30,8 +30,8 @@ def clean() -> PlantedSet:
 
 @pytest.fixture(autouse=True)
 def few_permutations(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A fifth of them, as in test_traps."""
-    monkeypatch.setattr(condition_traps, "PERMUTATIONS", 19)
+    """A fifth of them, as in test_leaks."""
+    monkeypatch.setattr(condition_leaks, "PERMUTATIONS", 19)
 
 
 def signals(table: pa.Table, channel: str) -> np.ndarray:
@@ -69,7 +69,7 @@ def leaking(clean: PlantedSet) -> PlantedSet:
 
 
 def test_leaks_in_signals_and_texts_are_all_named_and_none_hides_another(clean: PlantedSet) -> None:
-    found = {finding.trap: finding for finding in separability_findings(measured_set(leaking(clean)))}
+    found = {finding.leak: finding for finding in separability_findings(measured_set(leaking(clean)))}
     for layer in ("channels", "lines", "edges", "offsets", "lags", "texts", "levels"):
         assert f"state_told_by_{layer}" in found
     names = list(found)
@@ -87,5 +87,5 @@ def test_a_set_without_leaks_gives_no_finding_until_a_record_holds_samples_of_an
     values[7, 3000:7000] = values[2, 1237:5237]  # not at the same place
     raw = raw_columns(recordings(replace(clean, table=with_signals(clean.table, CHANNELS[0], values))))
     found = list(repeated_runs(replace(own, raw=raw)))
-    assert [finding.trap for finding in found] == ["repeated_samples"]
+    assert [finding.leak for finding in found] == ["repeated_samples"]
     assert "2 records" in found[0].measured

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnostics.audit.bank import sham_sentences, sham_traps, shams_found
-from diagnostics.audit.condition_traps import level_detectors
+from diagnostics.audit.bank import sham_leaks, sham_sentences, shams_found
+from diagnostics.audit.condition_leaks import level_detectors
 from diagnostics.audit.measured_set import MeasuredSet
 from diagnostics.audit.raw_records import RawColumns
 from diagnostics.judging.alarms import judged_alarm
@@ -43,7 +43,7 @@ def test_a_gain_of_shams_is_told_by_raw_levels_and_a_clean_set_is_not_accused() 
         raw = RawColumns(levels={"rms of lid": rms + gain_db * (STATES == "sham")})
         asked = replace(measured(), raw=raw)
         found = shams_found(asked, {"alone": level_detectors(asked, referenced=False)}, 0)
-        assert [trap.trap for trap in sham_traps(found)] == expected
+        assert [leak.leak for leak in sham_leaks(found)] == expected
 
 
 def test_noise_tells_a_sham_as_often_as_chance_does() -> None:
@@ -53,7 +53,7 @@ def test_noise_tells_a_sham_as_often_as_chance_does() -> None:
     ]
     # more than 4 of 20 at 5 % each come in 0.3 % of the cases; the seeds are fixed
     assert sum(one.told for one in found) <= 4
-    assert sham_traps(found) == []
+    assert sham_leaks(found) == []
     passed = next(one for one in found if not one.told)
     assert sham_sentences([passed])[0].startswith("Shams, damage without effect, are not told from healthy: at most")
 
@@ -63,7 +63,7 @@ def test_a_leak_tells_a_sham() -> None:
     (found,) = shams_found(measured(), {"alone": [leaking]}, 0)
     assert found.told
     assert found.auc.value == 1.0
-    assert [trap.trap for trap in sham_traps([found])] == ["sham_told_from_healthy"]
+    assert [leak.leak for leak in sham_leaks([found])] == ["sham_told_from_healthy"]
     assert "is told from healthy: an AUC of 1.00" in sham_sentences([found])[0]
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from diagnostics.audit import bank, condition_traps, signal_detectors
+from diagnostics.audit import bank, condition_leaks, signal_detectors
 from diagnostics.cli.app import main
 from diagnostics.indicators import channel_signals, table
 from diagnostics.indicators.ranking_table import ranking_table
@@ -81,7 +81,7 @@ def test_ranking_training_audit_and_features_resample_and_average_once_per_recor
     # What the audit's networks learn is not asked here: a few epochs read as many records as hundreds do.
     monkeypatch.setattr(signal_detectors, "SHOWN", 0)
     monkeypatch.setattr(signal_detectors, "DILATIONS", (1, 8))
-    monkeypatch.setattr(condition_traps, "PERMUTATIONS", 19)
+    monkeypatch.setattr(condition_leaks, "PERMUTATIONS", 19)
     monkeypatch.setattr(bank, "PERMUTATIONS", 19)
     for command, *options in (
         ("indicators", "--out", "ranking"),

@@ -142,11 +142,11 @@ def test_the_first_screen_names_damage_size_detector_and_certainty() -> None:
         "**Pitting from 4 mm² on** (2 to beyond the largest) is found in **nine of ten records**. Detector: "
         "**logistic regression**."
     )
-    sure = ANSWERS.first_certainty(found, error_free=False, audit="No trap was found. More.").replace("\xa0", " ")
+    sure = ANSWERS.first_certainty(found, error_free=False, audit="No leak was found. More.").replace("\xa0", " ")
     assert sure == (
         "**Each of 24 gearboxes was judged by a model that had learnt from others alone.** Of healthy records 5 % give "
         "a false alarm. All damage together: **AUC 0.80** (95 % limits 0.70 to 0.90; 0.5 is chance, 1 is perfect). No "
-        "trap was found (something other than damage that tells the labels)."
+        "leak was found (something other than damage that tells the labels)."
     )
 
 
@@ -180,7 +180,7 @@ def test_where_nothing_is_told_chance_stands_beside_it_and_less_than_chance_is_c
     assert screen(found) == (
         "**Nothing was found**: AUC **0.42** (0.35 to 0.49), chance is 0.5; 5 % of damaged and 5 % of healthy records "
         "alarm. **Below chance, with its whole interval: AUC of all damage together (0.35 to 0.49), severe (0.35 to "
-        "0.49) and slight (0.02 to 0.09)**. What was learnt turns round on other gearboxes: look for a trap (`audit`). "
+        "0.49) and slight (0.02 to 0.09)**. What was learnt turns round on other gearboxes: look for a leak (`audit`). "
         "Detector: **logistic regression**. Next: more gearboxes or larger damage; a healthy record of the same "
         "gearbox tells no more."
     )
@@ -195,10 +195,10 @@ def test_where_nothing_is_told_chance_stands_beside_it_and_less_than_chance_is_c
 
 def test_what_takes_from_the_answer_stands_on_the_first_screen() -> None:
     leaking = Detectors({CHOSEN: replace(detector(0.8, 4.0), sham=Interval(0.7, 0.6, 0.8))}, {})
-    sure = ANSWERS.first_certainty(leaking, error_free=True, audit="A trap was found. More.")
+    sure = ANSWERS.first_certainty(leaking, error_free=True, audit="A leak was found. More.")
     assert "**Damage without effect is told too (AUC 0.70)**: slight is not told." in sure
     assert "**The gears have no manufacturing errors**" in sure
-    assert sure.endswith("A trap was found (something other than damage that tells the labels).")
+    assert sure.endswith("A leak was found (something other than damage that tells the labels).")
     unasked = ANSWERS.first_certainty(leaking, error_free=False, audit="The audit was not run. So it is not known.")
     assert unasked.endswith("The audit was not run.")
     assert ANSWERS.first_answer(Detectors({}, {})).startswith("**No answer**")

@@ -94,10 +94,10 @@ def test_an_audit_of_another_set_is_none_of_this_one(dataset: Any, tmp_path: Pat
     beside = replace(dataset, path=tmp_path / "set")
     (tmp_path / "set_audit").mkdir()
     audit = tmp_path / "set_audit" / "audit.json"
-    audit.write_text(json.dumps({"identity": "another", "verdict": "No trap was found."}))
+    audit.write_text(json.dumps({"identity": "another", "verdict": "No leak was found."}))
     assert audit_beside(beside) is None
-    audit.write_text(json.dumps({"identity": dataset.manifest["identity"], "verdict": "No trap was found."}))
-    assert audit_sentence(beside, audit_beside(beside)) == "No trap was found."
+    audit.write_text(json.dumps({"identity": dataset.manifest["identity"], "verdict": "No leak was found."}))
+    assert audit_sentence(beside, audit_beside(beside)) == "No leak was found."
     reached = {ALONE: {"states": [{"state": "severe", "auc": {"value": 1.0}}]}}
     few = {"verdict": "Too few.", "too_few_gearboxes": True, "strongest": reached}
     assert audit_sentence(beside, few) == "Too few."

@@ -1,4 +1,4 @@
-"""Ten traps, one per layer, planted into a measured set without any: what the audit has to find, and nothing else."""
+"""Ten leaks, one per layer, planted into a measured set without any: what the audit has to find, and nothing else."""
 
 from __future__ import annotations
 
@@ -86,8 +86,8 @@ def metadata(clean: MeasuredSet) -> MeasuredSet:
     return labelled(clean, room_temperature=first, cabinet_temperature=second)
 
 
-TRAPS: dict[str, Callable[[MeasuredSet], MeasuredSet]] = {
-    trap.__name__: trap for trap in (noise, angle, byte, path, length, level, speed, order, duplicate, metadata)
+LEAKS: dict[str, Callable[[MeasuredSet], MeasuredSet]] = {
+    leak.__name__: leak for leak in (noise, angle, byte, path, length, level, speed, order, duplicate, metadata)
 }
 FOUND_AS = {
     "noise": "state_told_by_noise",

@@ -1,4 +1,4 @@
-"""Trap: a detector that does not look at the gears tells a state from healthy on gearboxes that it was not shown.
+"""Leak: a detector that does not look at the gears tells a state from healthy on gearboxes that it was not shown.
 
 All detectors of all layers count as one test. A layer is accused where its AUC lies above what the strongest detector
 of all layers reaches in every one of 99 permutations per damaged state, of the records of that state. By chance that
@@ -290,7 +290,7 @@ def level_detectors(measured: MeasuredSet, *, referenced: bool) -> list[Entry]:
     return [best_column(f"raw levels{suffix}", values, names), all_columns(f"all raw levels{suffix}", values)]
 
 
-def condition_traps(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
+def condition_leaks(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
     """Return a finding for every layer whose strongest detector tells a state by more than chance explains."""
     bank = condition_detectors(measured)
     asked = [detector for detectors in bank.values() for detector in detectors]

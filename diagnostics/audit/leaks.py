@@ -1,4 +1,4 @@
-"""All traps of the audit, and the verdict on them.
+"""All leaks of the audit, and the verdict on them.
 
 Which label columns must not tell the state, and how a tie of the state to one is mended, follows from role and section,
 which the set says of every column. A column of which it says nothing is a condition.
@@ -15,7 +15,7 @@ which the set says of every column. A column of which it says nothing is a condi
 * The damaged tooth stands always at the same angle, after the pulse of the tacho or at the first sample: Rayleigh's
   test, as above.
 * A threshold on one simple number finds the slightest damage on specimens that were never seen. Where gearboxes differ
-  more in level than a trap does, the level beside the gearbox's own healthy record gives it away. That slight damage
+  more in level than a leak does, the level beside the gearbox's own healthy record gives it away. That slight damage
   changes the level a little is physics; that it doubles the power is not.
 
 Source: standard literature (Rayleigh, mutual information); the permutation scheme and all else derived.
@@ -34,7 +34,7 @@ import numpy as np
 
 from diagnostics.audit.bank import ChanceLimit, gearboxes_needed
 from diagnostics.audit.condition_layers import CHANNELS, LAGS, NOISE
-from diagnostics.audit.condition_traps import LEVELS, condition_traps
+from diagnostics.audit.condition_leaks import LEVELS, condition_leaks
 from diagnostics.audit.detectability import FEWEST_SPECIMENS
 from diagnostics.audit.finding import LARGEST_AUC, MEND, MENDS, Finding
 from diagnostics.audit.measured_set import MeasuredSet, reference_records
@@ -646,11 +646,11 @@ MOVED_BY_MANY = frozenset(
         *(f"state_told_by_{layer}" for layer in (NOISE, CHANNELS, ENDS, EDGES, LAGS, LEVELS, TEMPLATES)),
     }
 )
-"""Traps that clocks, clipping, lost samples or a drift spring too: what names one cause speaks before them."""
+"""Leaks that clocks, clipping, lost samples or a drift spring too: what names one cause speaks before them."""
 
 
 def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]:
-    """Return every finding, in the order of the traps; those that many causes have come last.
+    """Return every finding, in the order of the leaks; those that many causes have come last.
 
     One finding hides no other: detectors on conditions, which name no cause, speak behind the others.
     """
@@ -663,9 +663,9 @@ def separability_findings(measured: MeasuredSet, seed: int = 0) -> list[Finding]
         *error_draws(measured),
         *noise_copies(measured),
         *damage_phase(measured),
-        *condition_traps(measured, seed),
+        *condition_leaks(measured, seed),
     ]
-    return sorted(findings, key=lambda finding: finding.trap in MOVED_BY_MANY)
+    return sorted(findings, key=lambda finding: finding.leak in MOVED_BY_MANY)
 
 
 def verdict(findings: Sequence[Finding], specimens: int, chance: ChanceLimit | None = None, missing: str = "") -> str:
@@ -681,7 +681,7 @@ def verdict(findings: Sequence[Finding], specimens: int, chance: ChanceLimit | N
         )
     if not findings and specimens < FEWEST_SPECIMENS:
         return (
-            f"No trap was found. Few traps can be found with {counted(specimens, 'gearbox')}. Scores on this set say "
+            f"No leak was found. Few leaks can be found with {counted(specimens, 'gearbox')}. Scores on this set say "
             "nothing about other gearboxes."
         )
     needed = gearboxes_needed(chance, specimens)
@@ -692,8 +692,8 @@ def verdict(findings: Sequence[Finding], specimens: int, chance: ChanceLimit | N
         )
     if not findings:
         return (
-            "No trap was found. As far as the audit can see, scores on unseen specimens of this set measure the damage."
+            "No leak was found. As far as the audit can see, scores on unseen specimens of this set measure the damage."
         )
     first, *others = findings
-    more = f" {counted(len(others), 'further trap')} found: {', '.join(one.trap for one in others)}." if others else ""
+    more = f" {counted(len(others), 'further leak')} found: {', '.join(one.leak for one in others)}." if others else ""
     return f"Scores on this set do not measure damage alone: {first.measured}. To correct it: {first.mend}{more}"

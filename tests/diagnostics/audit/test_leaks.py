@@ -1,4 +1,4 @@
-"""Each planted trap gives exactly its finding; a set without traps gives none."""
+"""Each planted leak gives exactly its finding; a set without leaks gives none."""
 
 from __future__ import annotations
 
@@ -6,14 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from planted_leaks import FOUND_AS, LEAKS, labelled, with_permuted_states
 from planted_set import Plant, measured
-from planted_traps import FOUND_AS, TRAPS, labelled, with_permuted_states
 
-from diagnostics.audit import condition_traps
-from diagnostics.audit import traps as findings
-from diagnostics.audit.condition_traps import condition_layers
-from diagnostics.audit.measured_set import MeasuredSet
-from diagnostics.audit.traps import (
+from diagnostics.audit import condition_leaks
+from diagnostics.audit import leaks as findings
+from diagnostics.audit.condition_leaks import condition_layers
+from diagnostics.audit.leaks import (
     chance_bound,
     likeness,
     permuted_states,
@@ -22,6 +21,7 @@ from diagnostics.audit.traps import (
     told_shares,
     verdict,
 )
+from diagnostics.audit.measured_set import MeasuredSet
 from siggen.keys.column import Role
 from tests.diagnostics.column_roles import ListedRoles
 
@@ -43,18 +43,18 @@ def twice(tmp_path_factory: pytest.TempPathFactory) -> MeasuredSet:
 def few_permutations(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """A fifth of the permutations: how often clean sets are accused is asked by the slow test, with all of them."""
     if request.node.get_closest_marker("slow") is None:
-        monkeypatch.setattr(condition_traps, "PERMUTATIONS", 19)
+        monkeypatch.setattr(condition_leaks, "PERMUTATIONS", 19)
 
 
-def traps(found: MeasuredSet) -> list[str]:
-    return [finding.trap for finding in separability_findings(found)]
+def leaks(found: MeasuredSet) -> list[str]:
+    return [finding.leak for finding in separability_findings(found)]
 
 
 def named(found: MeasuredSet) -> list[str]:
     """Return the findings that name a cause; detectors of layers, which take nearly all the time, are not asked."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(findings, "condition_traps", lambda *_: [])
-        return traps(found)
+        patch.setattr(findings, "condition_leaks", lambda *_: [])
+        return leaks(found)
 
 
 def relabelled(found: MeasuredSet, **columns: object) -> MeasuredSet:
@@ -64,16 +64,16 @@ def relabelled(found: MeasuredSet, **columns: object) -> MeasuredSet:
     return replace(found, labels=labels, roles={**found.roles, **own})
 
 
-def test_a_set_without_traps_gives_no_finding(clean: MeasuredSet) -> None:
-    assert traps(clean) == []
-    assert "No trap" in verdict([], 12)
+def test_a_set_without_leaks_gives_no_finding(clean: MeasuredSet) -> None:
+    assert leaks(clean) == []
+    assert "No leak" in verdict([], 12)
 
 
 def test_labels_of_the_damage_itself_and_of_what_follows_from_it_are_no_tie(clean: MeasuredSet) -> None:
     severe, state = clean.labels["state"] == "severe", clean.labels["state_id"].astype(float)
     of_damage = {"through_face": severe, "sink_depth_um": 12.0 * severe}
     follows = {"snr_lid_x_db": state, "contact_loss_share": state, "damage_count": state}
-    assert traps(relabelled(clean, **of_damage, **follows)) == []
+    assert leaks(relabelled(clean, **of_damage, **follows)) == []
 
 
 @pytest.mark.parametrize(
@@ -94,16 +94,16 @@ def test_labels_of_the_damage_itself_and_of_what_follows_from_it_are_no_tie(clea
     ],
     ids=["sidebands_tooth", "errors_noise", "length_channels_start"],
 )
-def test_traps_in_the_signals_give_exactly_their_findings(
+def test_leaks_in_the_signals_give_exactly_their_findings(
     plant: Plant, expected: list[str], tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     assert named(measured(plant, tmp_path_factory)) == expected
 
 
-@pytest.mark.parametrize("layer", TRAPS)
-def test_of_ten_traps_one_per_layer_each_is_found_and_named(clean: MeasuredSet, layer: str) -> None:
-    found = TRAPS[layer](clean)
-    assert (traps if FOUND_AS[layer].startswith(LAYER) else named)(found) == [FOUND_AS[layer]]
+@pytest.mark.parametrize("layer", LEAKS)
+def test_of_ten_leaks_one_per_layer_each_is_found_and_named(clean: MeasuredSet, layer: str) -> None:
+    found = LEAKS[layer](clean)
+    assert (leaks if FOUND_AS[layer].startswith(LAYER) else named)(found) == [FOUND_AS[layer]]
 
 
 def test_detectors_see_no_label_of_damage_and_nothing_that_follows_from_it(clean: MeasuredSet) -> None:
@@ -140,7 +140,7 @@ def test_what_a_state_changes_on_purpose_may_tell_it(clean: MeasuredSet) -> None
 
 @pytest.mark.slow
 def test_of_200_clean_sets_with_permuted_states_at_most_one_in_twenty_is_accused(clean: MeasuredSet) -> None:
-    accused = [bool(traps(with_permuted_states(clean, turn))) for turn in range(200)]
+    accused = [bool(leaks(with_permuted_states(clean, turn))) for turn in range(200)]
     assert sum(accused) <= 10
 
 
@@ -216,7 +216,7 @@ def test_a_gain_of_damaged_records_is_found_where_gearboxes_differ_more(
     of_gearbox = 10.0 ** np.random.default_rng(3).permutation(np.linspace(-1.0, 1.0, specimens.size))
     gain = np.where(twice.healthy, 1.0, 10.0 ** (gain_db / 20.0)) * of_gearbox[of_record]
     changed = replace(twice, values={**twice.values, "rms": twice.values["rms"] * gain[:, None]})
-    assert [finding.trap for finding in simple_thresholds(changed)] == expected
+    assert [finding.leak for finding in simple_thresholds(changed)] == expected
 
 
 def test_a_gain_on_one_channel_is_found_beside_a_small_change_that_tells_as_well(twice: MeasuredSet) -> None:
@@ -229,7 +229,7 @@ def test_a_gain_on_one_channel_is_found_beside_a_small_change_that_tells_as_well
     rms[~twice.healthy, first] *= 10.0 ** (9.5 / 20.0)
     rms[~twice.healthy, last] *= 10.0 ** (1.0 / 20.0)
     found = simple_thresholds(replace(twice, values={**twice.values, "rms": rms}))
-    assert [finding.trap for finding in found] == ["slight_separable_by_rms"]
+    assert [finding.leak for finding in found] == ["slight_separable_by_rms"]
     assert twice.channels[first] in found[0].measured
 
 
