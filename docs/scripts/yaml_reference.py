@@ -27,6 +27,7 @@ Begin with [the twenty keys that matter](twenty_keys.md). `make reference` print
 * **x** is a number or a [range](#ranges) such as `[1, 2]`, drawn once per gearbox; **c** is a number alone, **n** a whole one.
 * A key without a default is required wherever its section stands.
 * The end of a key is its unit: `_mm`, `_um` (µm), `_deg` and `_gpa` for gears, SI for the rest; `n_s_per_m` is N s/m.
+* Heights of pits are along the tooth's axis. Heights and profile lengths of spalls are along the flank.
 * `a.b` is key `b` in section `a`, `a[].b` in each entry of a list, `a.NAME.b` in each name. On the command line: `--set a.b=VALUE`,
   `--set a.0.b=VALUE`, `--set states.severe.b=VALUE`.
 * Keys of one meaning share a line, with slashes where they differ. Lines of `pinion` and `shafts.driver` hold for `gear` and

@@ -37,7 +37,8 @@ DAMAGED_GEAR = (
     "planet (the first)"
 )
 
-HeightReading: TypeAlias = Literal["axial", "radial", "arc"]
+AXIAL, ARC = "axial", "arc"
+"""How heights are measured: of pits along the tooth's axis, of spalls along the flank, as their profile lengths."""
 
 MODULE, FACE_WIDTH, SKEW = "module", "face width", "module over face width"
 """What lengths of damage grow with, so that it takes the same share of the flank of another gear pair. Pits keep their
@@ -51,7 +52,6 @@ PlaceOnFace = Annotated[Number | None, Within(least=0, words=(None,)), Grows(FAC
 
 FloorShape: TypeAlias = Literal["flat", "dish"]
 
-READING = "how heights and profile lengths are measured: along the tooth's axis, the radius, the flank"
 MIDDLE_HEIGHT = (
     "of the middle above the base circle; below_pitch: half way from the lowest point of single contact to "
     "the pitch point"
@@ -81,7 +81,7 @@ def height_m_of(pair: GearPair, side: Side, height_mm: float | str, reading: str
     height_mm : float or str
         Height as measured [mm], or 'pitch' for the pitch point of the mesh (roll angle tan(alpha_w), derived).
     reading : str
-        'axial', 'radial' or 'arc'.
+        'axial' or 'arc'.
     """
     gear = pair.member(side)
     if isinstance(height_mm, str):
@@ -108,10 +108,8 @@ def length_m(section: Section, key: str, uniform: Callable[[str], float]) -> flo
 
 def read_m(gear: SpurGear, height_m: float, reading: str) -> float:
     """Return the distance from the base circle of a flank point at an axial height, as a reading measures it [m]."""
-    if reading == "axial":
-        return height_m
-    roll, base = float(gear.roll_at_height(height_m)), gear.base_radius_m
-    return 0.5 * base * roll * roll if reading == "arc" else base * (math.hypot(1.0, roll) - 1.0)
+    roll = float(gear.roll_at_height(height_m))
+    return height_m if reading == AXIAL else 0.5 * gear.base_radius_m * roll * roll
 
 
 def axial_m(gear: SpurGear, value_m: float, reading: str) -> float:
@@ -125,14 +123,12 @@ def axial_heights_m(gear: SpurGear, values_m: FloatArray, reading: str) -> Float
     Any shape.
 
     Ends of damage that reach off the flank need a height, whatever is cut off there afterwards. Derived: dx/darc =
-    cos(psi - alpha_2), dx/dR = cos(psi - alpha_2) sqrt(1 + psi^2)/psi (finite at the base circle only per arc, so a
-    radial reading goes on below it as the arc does).
+    cos(psi - alpha_2).
     """
-    if reading == "axial":
+    if reading == AXIAL:
         return values_m
     end = read_m(gear, float(gear.height_m(gear.last_roll_rad)), reading)
-    ratio = np.clip(values_m, 0.0, end) / gear.base_radius_m
-    roll = np.sqrt(ratio * (ratio + 2.0)) if reading == "radial" else np.sqrt(2.0 * ratio)
+    roll = np.sqrt(2.0 * np.clip(values_m, 0.0, end) / gear.base_radius_m)
     beyond = np.maximum(values_m - end, 0.0) * math.cos(gear.last_roll_rad - gear.base_half_angle_rad)
     below = values_m * math.cos(gear.base_half_angle_rad)
     return np.where(values_m < 0.0, below, gear.height_m(roll) + beyond)

@@ -13,7 +13,7 @@ from siggen.gears.gear_pair import GearPair, contact_zones
 from siggen.gears.spur_gear import SpurGear
 from siggen.names import Side
 
-READINGS = ("axial", "radial", "arc")
+READINGS = ("axial", "arc")
 
 
 def flank_heights(gear: SpurGear) -> tuple[float, float]:
@@ -44,7 +44,7 @@ def axial_height(gear: SpurGear, value_m: float, reading: str) -> float:
     value_m : float
         Distance of the point from the base circle [m].
     reading : str
-        'axial' (already x), 'radial' (R - R_b) or 'arc' (along the involute, R_b psi^2/2).
+        'axial' (already x) or 'arc' (along the involute, R_b psi^2/2).
 
     Raises
     ------
@@ -54,8 +54,6 @@ def axial_height(gear: SpurGear, value_m: float, reading: str) -> float:
     if reading == "axial":
         return float(value_m)
     ratio = value_m / gear.base_radius_m
-    if reading == "radial":
-        return float(gear.height_m(sqrt(ratio * (ratio + 2.0))))
     if reading == "arc":
         return float(gear.height_m(sqrt(2.0 * ratio)))
     raise ValueError(f"received height reading {reading!r}; allowed: {', '.join(READINGS)}")

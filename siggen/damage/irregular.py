@@ -24,6 +24,7 @@ from siggen.arrays import FloatArray
 from siggen.damage.fault import Fault
 from siggen.damage.flank_damage import damage_problems, single_problems
 from siggen.damage.flank_place import (
+    ARC,
     DAMAGED_GEAR,
     DEPTH,
     EDGE_RADIUS,
@@ -34,11 +35,9 @@ from siggen.damage.flank_place import (
     MM,
     MODULE,
     PROBE_M,
-    READING,
     SKEW,
     AnyGear,
     FloorShape,
-    HeightReading,
     Length,
     OptionalLength,
     PlaceOnFace,
@@ -301,7 +300,6 @@ class IrregularSpalls(Fault):
         default=START,
         description=MIDDLE_HEIGHT,
     )
-    height_reading: HeightReading = Field(default="arc", description=READING)
     profile_length_mm: Length = Field(description=LENGTHS)
     face_share: Share = Field(description="length across the face over the face width")
     face_centre_mm: PlaceOnFace = Field(default=None, description=FACE_CENTRE)
@@ -337,9 +335,9 @@ class IrregularSpalls(Fault):
         """Return a rectangle as long as the longest spall: on the safe side, since skewed edges leave land earlier."""
         gear, across = pair.member(self.side), MM * _longest_face_mm(self, pair.face_width_m / MM)
         middle = 0.5 * pair.face_width_m if self.face_centre_mm is None else MM * bounds(self.face_centre_mm)[0]
-        along = read_m(gear, _heights_m(pair, self)[0], self.height_reading)
+        along = read_m(gear, _heights_m(pair, self)[0], ARC)
         half = 0.5 * MM * bounds(self.profile_length_mm)[1]
-        heights = axial_m(gear, along - half, self.height_reading), axial_m(gear, along + half, self.height_reading)
+        heights = axial_m(gear, along - half, ARC), axial_m(gear, along + half, ARC)
         return (FlankSpall(self.side, 0, rectangle(heights, (middle - 0.5 * across, middle + 0.5 * across)), PROBE_M),)
 
     @property
@@ -365,7 +363,7 @@ def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int) -> IrregularSp
     middle = 0.5 * width if size.face_centre_mm is None else MM * constant(size.face_centre_mm)
     milder = _milder(growth, model.gear, tooth)
     face = stations_across(width, middle - 0.5 * across, middle + 0.5 * across, milder)
-    along = read_m(gear, _middle_height_m(pair, size), size.height_reading)
+    along = read_m(gear, _middle_height_m(pair, size), ARC)
 
     def slope(edge: str) -> float:
         return PER_10MM * at(model.skew_mm_per_10mm, uniform(f"{name}.{edge}_skew_mm_per_10mm"))
@@ -374,7 +372,7 @@ def _on_tooth(model: IrregularSpalls, growth: Growth, tooth: int) -> IrregularSp
         along + side * (0.5 * length) + (slope(edge) * (face - middle) + _waves_m(size, growth, f"{name}.{edge}", face))
         for side, edge in zip((-1.0, 1.0), _edges(model.gear), strict=True)
     ]
-    edges = [axial_heights_m(gear, arc, size.height_reading) for arc in arcs]
+    edges = [axial_heights_m(gear, arc, ARC) for arc in arcs]
     return grown_spall(
         Side(model.gear),
         tooth,
@@ -401,9 +399,7 @@ def _middle_height_m(pair: GearPair, size: IrregularSpalls) -> float:
     centre = size.centre_height_mm
     if centre == "below_pitch":
         return initiation_height_m(pair, Side(size.gear))
-    return height_m_of(
-        pair, Side(size.gear), centre if isinstance(centre, str) else constant(centre), size.height_reading
-    )
+    return height_m_of(pair, Side(size.gear), centre if isinstance(centre, str) else constant(centre), ARC)
 
 
 def _waves_m(size: IrregularSpalls, growth: Growth, name: str, face_m: FloatArray) -> FloatArray:
@@ -477,7 +473,7 @@ def _edge_problems(pair: GearPair, size: IrregularSpalls, width_mm: float) -> It
 
 def _height_problems(pair: GearPair, size: IrregularSpalls, reach_m: float) -> Iterator[Problem]:
     """Yield a middle or an edge off the flank, else a floor deeper than the tooth allows."""
-    gear, reading = pair.member(Side(size.gear)), size.height_reading
+    gear, reading = pair.member(Side(size.gear)), ARC
     foot, tip = flank_heights(gear)
     ends = [MM * value for value in (read_m(gear, foot, reading) / MM, read_m(gear, tip, reading) / MM)]
     for height in _heights_m(pair, size):

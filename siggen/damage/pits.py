@@ -18,6 +18,8 @@ from pydantic import Field, model_validator
 from siggen.arrays import FloatArray
 from siggen.damage.fault import Fault, HitTeeth
 from siggen.damage.flank_place import (
+    ARC,
+    AXIAL,
     DAMAGED_GEAR,
     DEPTH,
     FACE_CENTRE,
@@ -26,11 +28,9 @@ from siggen.damage.flank_place import (
     MIDDLE_HEIGHT,
     MM,
     PROBE_M,
-    READING,
     AnyGear,
     FloorShape,
     Height,
-    HeightReading,
     Length,
     LengthAcross,
     PlaceOnFace,
@@ -285,7 +285,6 @@ class LayeredPits(PitSize, Fault):
     layers: Annotated[Whole, Field(ge=1, le=1000)] = Field(description="rows of pits")
     pits_per_layer: Annotated[Whole, Field(ge=1, le=1000)] = Field(description="pits in a row, across the face")
     first_height_mm: Height = Field(default="pitch", description="height of the first row above the base circle")
-    height_reading: HeightReading = Field(default="axial", description=READING)
     spacing_face_mm: LengthAcross = Field(default=1.0, description=SPACING)
     spacing_profile_mm: Length = Field(default=0.4, description=SPACING)
     face_centre_mm: PlaceOnFace = Field(default=None, description=FACE_CENTRE)
@@ -307,7 +306,7 @@ class LayeredPits(PitSize, Fault):
 
     def widest(self, pair: GearPair) -> Damage:
         """Return one row."""
-        height_m = heights_m(pair, self.side, self.first_height_mm, self.height_reading)[0]
+        height_m = heights_m(pair, self.side, self.first_height_mm, AXIAL)[0]
         return tuple(largest_pit(self.side, 0, height_m, face_m, self) for face_m in self._row_faces_m(pair))
 
     def _pits(self, growth: Growth, tooth: int) -> Iterator[FlankPit]:
@@ -324,7 +323,7 @@ class LayeredPits(PitSize, Fault):
         """Return the centres [m] of free places of the layers; columns of a layer count from its middle outwards."""
         milder = self._milder(growth, tooth)
         uniform, pair = growth.place(self.gear, LayeredPits), growth.pair
-        first = drawn_height_m(self.first_height_mm, self.height_reading, pair, self.side, uniform("first_height_mm"))
+        first = drawn_height_m(self.first_height_mm, AXIAL, pair, self.side, uniform("first_height_mm"))
         middle = 0.5 * pair.face_width_m if self.face_centre_mm is None else length_m(self, "face_centre_mm", uniform)
         # An even number of columns is centred between two of them; what grows keeps the lattice that it began on.
         between = (milder[-1] if milder else self).pits_per_layer % 2 == 0
@@ -350,7 +349,7 @@ class LayeredPits(PitSize, Fault):
         reach_m = (self.pits_per_layer - 1) / 2 * bounds(self.spacing_face_mm)[1] / 1e3
         climb_m = (self.layers - 1) * bounds(self.spacing_profile_mm)[1] / 1e3
         face_key = "spacing_face_mm" if self.pits_per_layer > 1 else "face_centre_mm"
-        for first_m in heights_m(pair, self.side, self.first_height_mm, self.height_reading):
+        for first_m in heights_m(pair, self.side, self.first_height_mm, AXIAL):
             for row, height_m in ((1, first_m), (self.layers, first_m + climb_m)):
                 for face_m in (centres_m[0] - reach_m, centres_m[-1] + reach_m):
                     remark = f"outermost pit of row {row} of {self.layers}: "
@@ -376,7 +375,6 @@ class ClusteredPits(PitSize, Fault):
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
     count: Annotated[Whole, Field(ge=1, le=10_000)] = Field(description="pits")
     centre_height_mm: Height = Field(default="pitch", description=MIDDLE_HEIGHT)
-    height_reading: HeightReading = Field(default="axial", description=READING)
     spread_profile_mm: Length = Field(description="standard deviation of the heights; across the face pits lie evenly")
 
     def key_that_adds_nothing(self, milder: Fault) -> str | None:
@@ -392,7 +390,7 @@ class ClusteredPits(PitSize, Fault):
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:
         """Yield what is wrong with pits in the middle and at either end of the flank."""
         middle_m, keys = pair.face_width_m / 2, ("centre_height_mm", "spread_profile_mm", "depth_mm")
-        for height_m in heights_m(pair, self.side, self.centre_height_mm, self.height_reading):
+        for height_m in heights_m(pair, self.side, self.centre_height_mm, AXIAL):
             yield from pit_place_problems(pair, PitPlace(self.side, height_m, middle_m, self, *keys))
         for height_m in flank_heights(pair.member(self.side)):
             remark = "a pit scattered to the end of the flank: "
@@ -413,7 +411,7 @@ class ClusteredPits(PitSize, Fault):
         heights, faces = clustered_centres(
             growth.rng(f"{self.gear}.{tooth}.centres"),
             count,
-            drawn_height_m(self.centre_height_mm, self.height_reading, pair, self.side, uniform("centre_height_mm")),
+            drawn_height_m(self.centre_height_mm, AXIAL, pair, self.side, uniform("centre_height_mm")),
             length_m(self, "spread_profile_mm", uniform),
             0.0,
             pair.face_width_m,
@@ -443,7 +441,6 @@ class ListedPits(Fault):
     one_flank: ClassVar[bool] = True
 
     kind: Literal["list"] = "list"
-    height_reading: HeightReading = Field(default="axial", description=READING)
     pits: tuple[ListedPit, ...] = Field(default=(), description="the pits")
     outlines: tuple[ListedIrregular, ...] = Field(default=(), description="irregular spalls by their very edges")
 
@@ -500,18 +497,18 @@ class ListedPits(Fault):
 
     def drawn(self, growth: Growth) -> Parts:
         """Return what is listed."""
-        listed = (one.spall(growth.pair, self.height_reading) for one in self.outlines)
+        listed = (one.spall(growth.pair, ARC) for one in self.outlines)
         return (*self._pits(growth), *listed)
 
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:
         """Yield what is wrong with each of them."""
         for index, pit in enumerate(self.pits):
             keys = (f"pits.{index}.height_mm", f"pits.{index}.face_mm", f"pits.{index}.depth_mm")
-            for height_m in heights_m(pair, Side(pit.gear), pit.height_mm, self.height_reading):
+            for height_m in heights_m(pair, Side(pit.gear), pit.height_mm, AXIAL):
                 for face_mm in bounds(pit.face_mm):
                     yield from pit_place_problems(pair, PitPlace(Side(pit.gear), height_m, face_mm / 1e3, pit, *keys))
         for index, outline in enumerate(self.outlines):
-            yield from outline.problems(pair, self.height_reading, f"outlines.{index}.")
+            yield from outline.problems(pair, ARC, f"outlines.{index}.")
 
     def widest(self, pair: GearPair) -> Damage:
         """Return all of them, as large as they may be."""
@@ -520,7 +517,7 @@ class ListedPits(Fault):
             largest_pit(
                 Side(pit.gear),
                 pit.tooth,
-                heights_m(pair, Side(pit.gear), pit.height_mm, self.height_reading)[0],
+                heights_m(pair, Side(pit.gear), pit.height_mm, AXIAL)[0],
                 bounds(pit.face_mm)[0] / 1e3,
                 pit,
             )
@@ -530,13 +527,13 @@ class ListedPits(Fault):
         outlined = (one for one in self.outlines if one.tooth < pair.member(Side(one.gear)).teeth)
         return (
             *pits,
-            *(replace(one.spall(pair, self.height_reading), strip_depths_m=one.probe_depths_m) for one in outlined),
+            *(replace(one.spall(pair, ARC), strip_depths_m=one.probe_depths_m) for one in outlined),
         )
 
     def _pits(self, growth: Growth) -> Iterator[FlankPit]:
         for index, pit in enumerate(self.pits):
             rng = growth.rng(f"list.pit{index}")
-            height = drawn_height_m(pit.height_mm, self.height_reading, growth.pair, Side(pit.gear), rng.random())
+            height = drawn_height_m(pit.height_mm, AXIAL, growth.pair, Side(pit.gear), rng.random())
             yield drawn_pit(
                 pit, Side(pit.gear), growth.pair, pit.tooth, (height, MM * at(pit.face_mm, rng.random())), rng
             )

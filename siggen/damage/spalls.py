@@ -15,6 +15,7 @@ from pydantic import Field
 from siggen.damage.fault import Fault
 from siggen.damage.flank_damage import damage_problems
 from siggen.damage.flank_place import (
+    ARC,
     DAMAGED_GEAR,
     DEPTH,
     FACE_CENTRE,
@@ -23,11 +24,9 @@ from siggen.damage.flank_place import (
     MIDDLE_HEIGHT,
     MM,
     PROBE_M,
-    READING,
     AnyGear,
     FloorShape,
     Height,
-    HeightReading,
     Length,
     LengthAcross,
     PlaceOnFace,
@@ -123,7 +122,7 @@ def spall_on_tooth(pair: GearPair, size: SpallSize, reading: str, tooth: int) ->
     size : SpallSize
         Without distributions.
     reading : str
-        How its heights and its profile length are measured: 'axial', 'radial' or 'arc'.
+        How its heights and its profile length are measured: 'axial' or 'arc'.
     tooth : int
 
     Raises
@@ -175,7 +174,6 @@ class Spalls(SpallSize, Fault):
 
     kind: Literal["spall"] = "spall"
     teeth: Teeth = Field(default=1, description=DAMAGED_TEETH)
-    height_reading: HeightReading = Field(default="arc", description=READING)
 
     def key_that_adds_nothing(self, milder: Fault) -> str | None:
         """Return the size that is smaller, for spalls in no direction larger than the milder ones at the same place."""
@@ -187,11 +185,11 @@ class Spalls(SpallSize, Fault):
 
     def place_problems(self, pair: GearPair) -> Iterator[Problem]:
         """Yield what is wrong with a spall by itself."""
-        return spall_problems(pair, self, self.height_reading)
+        return spall_problems(pair, self, ARC)
 
     def widest(self, pair: GearPair) -> Damage:
         """Return the largest spall."""
-        return (largest_spall(pair, self, self.height_reading, 0),)
+        return (largest_spall(pair, self, ARC, 0),)
 
     def straight_edges(self, face_width_mm: float) -> tuple[bool, bool]:
         """Return whether it is a rectangle, and whether it may go through the face."""
@@ -199,4 +197,4 @@ class Spalls(SpallSize, Fault):
 
     def _on_tooth(self, growth: Growth, tooth: int) -> FlankSpall:
         uniform, name = growth.place(self.gear, Spalls), f"spall.{self.gear}.{tooth}"
-        return spall_on_tooth(growth.pair, draw(self, uniform, name), self.height_reading, tooth)
+        return spall_on_tooth(growth.pair, draw(self, uniform, name), ARC, tooth)

@@ -113,7 +113,7 @@ class PittingCourse:
             for pits, outlines, sizes in self._sized(time)
             for pit, edges, size in zip(pits, outlines, sizes, strict=True)
         )
-        return ListedPits(height_reading="arc", outlines=listed) if listed else None
+        return ListedPits(outlines=listed) if listed else None
 
     def removed_m3(self, time: float) -> float:
         """Return the volume of all pits at a damage time [m³]: what each adds to the area of its tooth, times depth."""

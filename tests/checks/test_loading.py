@@ -133,15 +133,15 @@ def test_damage_is_checked_where_another_state_is_wrong():
     assert sorted(found) == ["states.healthy.name", "states.slight.damage.depth_mm"]
 
 
-def test_heights_are_read_as_the_configuration_says():
+def test_heights_along_the_axis_and_along_the_flank_are_of_one_point():
     pair = gear_pair(config().gears)
-    # Pitch point of 18 teeth of 3 mm above the base circle: axial 1.6579, radial (m z/2)(1 - cos 20) = 1.6283, arc
-    # R_b tan^2(20)/2 = 1.6805 mm; the three are the same point (given to 4 decimals)
+    # Pitch point of 18 teeth of 3 mm above the base circle: axial 1.6579, arc
+    # R_b tan^2(20)/2 = 1.6805 mm; both are the same point (given to 4 decimals)
     heights = [
         height_m_of(pair, "pinion", height, reading)
-        for height, reading in [("pitch", "axial"), (1.6579, "axial"), (1.6283, "radial"), (1.6805, "arc")]
+        for height, reading in [("pitch", "axial"), (1.6579, "axial"), (1.6805, "arc")]
     ]
-    assert heights == pytest.approx([1.6579e-3] * 4, abs=1e-7)
+    assert heights == pytest.approx([1.6579e-3] * 3, abs=1e-7)
 
 
 def test_the_gear_pair_is_in_si_units():

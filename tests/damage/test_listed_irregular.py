@@ -20,7 +20,7 @@ EDGES = [[4.0, 2.0, 2.0], [6.0, 1.5, 2.5], [9.0, 2.0, 2.0]]
 def listed(**changes: Any) -> dict[str, Any]:
     """Return a configuration with one listed outline, heights as arcs."""
     one = {"tooth": 3, "edges_mm": EDGES, "depth_mm": 0.1, "edge_radius_mm": 0.05, **changes}
-    damage = {"kind": "list", "height_reading": "arc", "outlines": [one]}
+    damage = {"kind": "list", "outlines": [one]}
     return minimal(states={"healthy": {}, "slight": {"damage": damage}})
 
 

@@ -39,11 +39,6 @@ def test_a_flank_goes_on_below_the_base_circle_along_its_tangent() -> None:
     assert below == pytest.approx(math.cos(gear.base_half_angle_rad), rel=1e-9)
 
 
-def test_axial_lengths_are_heights() -> None:
-    (spall,) = damage_of(config_with({**BOX, "height_reading": "axial", "centre_height_mm": 2.0}), 1)
-    assert spall.outline.height_range_m == pytest.approx((1.5e-3, 2.5e-3), rel=1e-12)
-
-
 def test_a_longer_spall_over_the_same_centre_takes_the_place_of_the_shorter_one() -> None:
     config = config_with(BOX, {**BOX, "profile_length_mm": 1.6, "depth_mm": 0.2})
     slight, moderate = damage_of(config, 1), damage_of(config, 2)
@@ -94,7 +89,7 @@ def test_a_more_severe_state_contains_the_region_of_the_milder_one(ladder: list[
         (BOX, {"face_length_mm": 0.0}, "face_length_mm", "0.0", "above 0"),
         (BOX, {"profile_length_mm": -1.0}, "profile_length_mm", "-1.0", "above 0"),
         (BOX, {"depth_mm": float("nan")}, "depth_mm", "nan", "above 0"),
-        (BOX, {"centre_height_mm": 9.0, "height_reading": "axial"}, "centre_height_mm", "9 mm", "4.74319 mm"),
+        (BOX, {"centre_height_mm": 9.0}, "centre_height_mm", "9 mm", "4.74319 mm"),
         (BOX, {"face_centre_mm": 20.5}, "face_centre_mm", "20.5 mm", "0 to 20 mm"),
         (BOX, {"depth_mm": 4.0}, "depth_mm", "4 mm", "half tooth thickness"),
         (BOX, {"depth_mm": None}, "depth_mm", "null", "above 0"),

@@ -9,7 +9,7 @@ import pytest
 
 from tests.house.source_tree import ROOT
 
-MOST_KEYS = 195
+MOST_KEYS = 176
 """Keys of docs/reference/yaml.md. A new key is worth more than one that can go: lower this with every one that goes."""
 KEY_LINE = re.compile(r"\|`(?P<key>[^`]+)`(?:, `[^`]+`)*\|")
 PAGES = [path for path in (ROOT / "docs").rglob("*.md") if path.parent.name != "reference"]

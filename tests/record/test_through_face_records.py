@@ -16,7 +16,7 @@ from tests.simulated import simulate
 
 SPALL = {
     "kind": "spall", "gear": "pinion", "teeth": 1, "centre_height_mm": "pitch",
-    "face_length_mm": 20.0, "profile_length_mm": 1.0, "depth_mm": 0.2, "height_reading": "arc",
+    "face_length_mm": 20.0, "profile_length_mm": 1.0, "depth_mm": 0.2,
 }  # fmt: skip
 WHOLE_FACE = "take the whole contact length"
 
