@@ -147,6 +147,26 @@ class KeptRecords:
         """Return the places of the records of a split."""
         return np.flatnonzero(self.labels["split"] == name)
 
+    def kinds(self, places: np.ndarray) -> list[str]:
+        """Return the kinds of damage of teeth of some records."""
+        return sorted(set(self.labels["fault"][places][self.labels["faulty_gear"][places] != SOUND].tolist()))
+
+    def rows(self) -> np.ndarray:
+        """Return what a network takes of all records, beside a healthy record where there is one."""
+        return gear_rows(self.averages, self.averages, healthy_references(self.labels))
+
+    def truths(self, kinds: Sequence[str]) -> DamageTruth:
+        """Return what is true of all records; other kinds than those are of no place."""
+        fault, gear = self.labels["fault"], self.labels["faulty_gear"]
+        with np.errstate(divide="ignore"):
+            size = np.log(self.labels["damaged_area_share"].astype(np.float32))
+        return DamageTruth(
+            damaged=(gear != SOUND).astype(np.float32),
+            kind=np.array([kinds.index(name) if name in kinds else NOWHERE for name in fault.tolist()]),
+            gear=np.array([GEARS.index(name) if name in GEARS else NOWHERE for name in gear.tolist()]),
+            size=np.where(np.isfinite(size), size, np.nan),
+        )
+
 
 class _TimeIsUpError(Exception):
     """The minutes of a call are over; the next one goes on."""
@@ -311,54 +331,70 @@ def pair_splits(pairs: np.ndarray) -> np.ndarray:
     return splits.astype(str)
 
 
-def _rows(kept: KeptRecords) -> np.ndarray:
-    """Return the rows of all records, beside a healthy record where there is one."""
-    return gear_rows(kept.averages, kept.averages, healthy_references(kept.labels))
-
-
-def _truths(kept: KeptRecords, kinds: Sequence[str]) -> DamageTruth:
-    fault, gear = kept.labels["fault"], kept.labels["faulty_gear"]
-    with np.errstate(divide="ignore"):
-        size = np.log(kept.labels["damaged_area_share"].astype(np.float32))
-    return DamageTruth(
-        damaged=(gear != SOUND).astype(np.float32),
-        kind=np.array([kinds.index(name) if name in kinds else NOWHERE for name in fault.tolist()]),
-        gear=np.array([GEARS.index(name) if name in GEARS else NOWHERE for name in gear.tolist()]),
-        size=np.where(np.isfinite(size), size, np.nan),
-    )
-
-
 def _trained(
     home: Path, chosen: PretrainingSettings, kept: KeptRecords, check: Callable[[], None], say: Say
 ) -> tuple[GearboxNetwork, np.ndarray, DamageTruth]:
     """Return the network at its last pass, with the rows and the truth of all records."""
     learn = kept.of_split(TRAIN)
-    sound = kept.labels["faulty_gear"][learn] == SOUND
-    faults = sorted(set(kept.labels["fault"][learn][~sound].tolist()))
-    if not faults or not sound.any():
+    faults = kept.kinds(learn)
+    if not faults or not (kept.labels["faulty_gear"][learn] == SOUND).any():
         raise UsageError("families: the split train has no healthy, or no damaged records; ask for more gearboxes")
-    rows, truths = _rows(kept), _truths(kept, faults)
+    rows, truths = kept.rows(), kept.truths(faults)
+    network = taught(rows, truths, faults, learn, chosen, place=home / PLACE, check=check, say=say)
+    return network, rows, truths
+
+
+def taught(
+    rows: np.ndarray,
+    truths: DamageTruth,
+    kinds: Sequence[str],
+    learn: np.ndarray,
+    chosen: PretrainingSettings,
+    *,
+    place: Path | None = None,
+    check: Callable[[], None] = lambda: None,
+    say: Say = lambda _: None,
+) -> GearboxNetwork:
+    """Return a network that began with random weights, at its last pass over some records.
+
+    Parameters
+    ----------
+    rows : (records, channels, gears, 4, steps) float16
+        Of all records, see `gear_rows`.
+    truths : DamageTruth
+        Of all records.
+    kinds : sequence of str
+        Kinds of damage that it can name.
+    learn : (n,) int
+        Places of the records to learn from.
+    chosen : PretrainingSettings
+        Passes, batch, rate, decay, widths, alone and seed are used.
+    place : Path, optional
+        File from which the passes go on.
+    check, say : callable, optional
+        Called before every batch; takes a line after every pass.
+    """
     share, sizes = float(truths.damaged[learn].mean()), truths.size[learn][np.isfinite(truths.size[learn])]
     channels = rows.shape[1]
     with seeded(chosen.seed):
         centre = (float(sizes.mean()), max(float(sizes.std()), 1e-3)) if sizes.size else (0.0, 1.0)
-        learner = GearboxLearner(faults, chosen.widths, centre)
+        learner = GearboxLearner(kinds, chosen.widths, centre)
 
         def batches(number: int) -> Iterator[torch.Tensor]:
             rng, losses = generator(chosen.seed, Purpose.PRETRAINING, number), []
             order = rng.permutation(learn.size * channels)
             for start in range(0, order.size - order.size % chosen.batch or order.size, chosen.batch):
                 check()
-                place, channel = np.divmod(order[start : start + chosen.batch], channels)
-                seen = _moved(rows[learn[place], channel], rng, chosen.alone)
-                loss = told_loss(learner(seen), truths.chosen(learn[place]), share)
+                record, channel = np.divmod(order[start : start + chosen.batch], channels)
+                seen = _moved(rows[learn[record], channel], rng, chosen.alone)
+                loss = told_loss(learner(seen), truths.chosen(learn[record]), share)
                 losses.append(float(loss.detach()))
                 yield loss
             say(f"pass {number} of {chosen.passes}: loss {np.mean(losses):.4f}")
 
         loop = LoopSettings(chosen.passes, chosen.rate, chosen.decay, falling=True)
-        fit_network(learner, batches, None, loop, place=home / PLACE)
-    return learnt(learner), rows, truths
+        fit_network(learner, batches, None, loop, place=place)
+    return learnt(learner)
 
 
 def _moved(rows: np.ndarray, rng: np.random.Generator, alone: float) -> torch.Tensor:

@@ -5,6 +5,11 @@ what has learnt on the part to learn from, and labels are those of `labels_of`. 
 network without training, of a regression on what it says, of logistic regression and gradient boosting on all
 indicators, and differences of the second from both, paired on the same gearboxes; limits of 95 % over gearboxes. Of a
 set also by state. Another network: `--network runs/pretrained/network.safetensors`.
+
+`--from-nothing 3` prints another table of a set: the regression, against the same network that begins with random
+weights of three seeds and learns on the gearboxes of the same folds alone, in the loop of `docs/scripts/pretrain.py`. A
+fifth of those gearboxes, held back, tells how many passes it takes: twice as many until that is no gain. Then it learns
+on all. Scores are ranked within a fold, since each has networks of its own. `--passes 16` takes so many instead.
 """
 
 from __future__ import annotations
@@ -15,6 +20,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from scipy.stats import rankdata
 
 import diagnostics
 import siggen
@@ -28,11 +34,15 @@ from diagnostics.scoring.benchmark import is_benchmark, labelled, labels_of
 from diagnostics.statistics.evaluation import bootstrap_weights, interval, weighted_auc
 from diagnostics.training.classifiers import DEFAULT_TREES, BoostingBaseline, LogisticBaseline
 from diagnostics.training.feature_classifier import DEFAULT_STRENGTH
-from diagnostics.training.gearbox_network import load_gearbox_network
+from diagnostics.training.gear_rows import ALONE
+from diagnostics.training.gearbox_network import GearboxNetwork, load_gearbox_network
+from diagnostics.training.pretraining import LABELS, KeptRecords, PretrainingSettings, taught
 from diagnostics.training.referenced import healthy_references, log_mean, log_values
 from diagnostics.training.shipped_network import gear_averages, heads, shipped_network
 
 SIDES = ("alone", "beside")
+FEWEST_PASSES = 8
+"""Of a network that begins from nothing."""
 
 
 class Judged(NamedTuple):
@@ -60,7 +70,7 @@ def learnt(
     return said[asked, 0], *found
 
 
-def of_set(path: Path, seed: int, network: object) -> Iterator[Judged]:
+def of_set(path: Path, seed: int, network: GearboxNetwork) -> Iterator[Judged]:
     """Yield what is judged of a set, alone and beside."""
     dataset = siggen.open(path)
     table, lines = diagnostics.table(dataset), gear_averages(dataset, 2)
@@ -86,7 +96,81 @@ def of_set(path: Path, seed: int, network: object) -> Iterator[Judged]:
             yield Judged(name, side, ill[own], owner[own], tuple(scores[:, own]))
 
 
-def of_benchmark(path: Path, network: object) -> Iterator[Judged]:
+class FromNothing:
+    """Networks that begin with random weights and learn on some gearboxes of a set alone."""
+
+    def __init__(self, dataset: siggen.Dataset) -> None:
+        columns = dataset.labels(columns=LABELS)
+        labels = {name: np.array(columns[name].to_pylist()) for name in LABELS}
+        self.kept = KeptRecords(gear_averages(dataset), labels)
+        self.owner, self.kinds = labels["specimen_id"], self.kept.kinds(np.arange(len(columns)))
+        self.rows, self.truths = self.kept.rows(), self.kept.truths(self.kinds)
+        self.damaged, self.references = self.truths.damaged > 0.0, healthy_references(labels)
+        self.seen = {"alone": self.owner >= 0, "beside": np.array([known.size > 0 for known in self.references])}
+
+    def said(self, network: GearboxNetwork, side: str) -> np.ndarray:
+        """Return what a network says of all records, (records, numbers)."""
+        lines = self.kept.averages
+        return heads(lines, lines, self.references, network) if side == "beside" else heads(lines, network=network)
+
+    def learnt(self, learn: np.ndarray, asked: np.ndarray, passes: int, seed: int) -> dict[str, np.ndarray]:
+        """Return the log odds of damage (records,) of those asked, on each side, learnt from others; else NaN."""
+        chosen, rows = PretrainingSettings(passes=passes, seed=seed), self.rows[asked]
+        network, found = taught(self.rows, self.truths, self.kinds, learn, chosen), dict[str, np.ndarray]()
+        for side in reversed(SIDES):
+            found[side] = np.full(self.owner.size, np.nan)
+            found[side][asked] = network.tell(rows).damage
+            rows[..., ALONE:, :] = 0.0
+        return found
+
+    def passes(self, learn: np.ndarray, seed: int) -> int:
+        """Return after how many passes it is best on a fifth of the gearboxes: twice as many until that is no gain."""
+        part = Design(folds=5, owner=2001).dealt(self.owner[learn], seed)[0]
+        held, best, passes = learn[part == 0], -np.inf, FEWEST_PASSES
+        while True:
+            found = self.learnt(learn[part > 0], held, passes, seed)
+            own = {side: held[self.seen[side][held]] for side in SIDES}
+            gained = np.mean([self.area(found[side], own[side], np.ones((1, own[side].size))) for side in SIDES])
+            if gained <= best:
+                return passes // 2
+            best, passes = gained, 2 * passes
+
+    def area(self, score: np.ndarray, places: np.ndarray, weights: np.ndarray) -> np.ndarray:
+        """Return the AUC (b,) of damage of some records."""
+        return weighted_auc(score[places], self.damaged[places], weights, self.owner[places])
+
+
+def from_nothing(path: Path, seed: int, network: GearboxNetwork, begun: int, known_passes: int | None) -> None:
+    """Print a table: a regression on what the network says against `begun` networks from nothing, by fold."""
+    asked = FromNothing(siggen.open(path))
+    fold = Design(folds=5, owner=2000).dealt(asked.owner, seed)[0]
+    ranks = {side: np.zeros((1 + begun, fold.size)) for side in SIDES}
+    said = {side: asked.said(network, side) for side in SIDES}
+    for number in np.unique(fold):
+        learn, judged = np.flatnonzero(fold != number), np.flatnonzero(fold == number)
+        passes = known_passes or asked.passes(learn, seed)
+        print(f"fold {number + 1}: {passes} passes", flush=True)
+        found = [asked.learnt(learn, judged, passes, seed + each) for each in range(begun)]
+        for side in SIDES:
+            places, known = (one[asked.seen[side][one]] for one in (judged, learn))
+            own = Odds(LogisticBaseline((HEADS_STRENGTH,), take_logarithms=False))
+            own.fit(said[side][known], asked.damaged[known], asked.owner[known])
+            scores = own.score(said[side][places]), *(each[side][places] for each in found)
+            ranks[side][:, places] = [rankdata(score) / score.size for score in scores]
+    print("\n| seen | gearboxes | regression on the network | from nothing | by seeds | difference |")
+    print("|---" * 6 + "|")
+    for side in SIDES:
+        places = np.flatnonzero(asked.seen[side])
+        weights = bootstrap_weights(asked.owner[places], seed)
+        own, *others = (asked.area(rank, places, weights) for rank in ranks[side])
+        mean, count = np.mean(others, axis=0), np.unique(asked.owner).size
+        cells = [limits(one, count) for one in (own, mean, own - mean)]
+        values = [float(each[0]) for each in others]
+        spread = f"{min(values):.3f} to {max(values):.3f}"
+        print(f"| {side} | {count} | {cells[0]} | {cells[1]} | {spread} | {cells[2]} |", flush=True)
+
+
+def of_benchmark(path: Path, network: GearboxNetwork) -> Iterator[Judged]:
     """Yield what is judged of every test part, alone and beside."""
     benchmark = diagnostics.open_benchmark(path)
     records, truth = benchmark_records(benchmark, 2), labels_of(benchmark, None)
@@ -124,11 +208,16 @@ def areas(judged: Judged, seed: int) -> tuple[np.ndarray, ...]:
     return tuple(weighted_auc(score, judged.damaged, weights, judged.gearbox) for score in judged.scores)
 
 
+def limits(samples: np.ndarray, gearboxes: int) -> str:
+    """Return a value with its limits."""
+    one = interval(samples, gearboxes)
+    return f"{one.value:.3f} ({one.low:.3f} to {one.high:.3f})"
+
+
 def row(name: str, side: str, gearboxes: int, found: tuple[np.ndarray, ...]) -> str:
     """Return a line of the table."""
     differences = (found[1] - found[2], found[1] - found[3])
-    cells = [interval(one, gearboxes) for one in (*found, *differences)]
-    said = " | ".join(f"{one.value:.3f} ({one.low:.3f} to {one.high:.3f})" for one in cells)
+    said = " | ".join(limits(one, gearboxes) for one in (*found, *differences))
     return f"| {name} | {side} | {gearboxes} | {said} |"
 
 
@@ -139,8 +228,13 @@ def main() -> None:
     asked.add_argument("path", type=Path)
     asked.add_argument("--network", type=Path)
     asked.add_argument("--seed", type=int, default=0)
+    asked.add_argument("--from-nothing", type=int, metavar="SEEDS", help="of a set only")
+    asked.add_argument("--passes", type=int, help="of those, where another set has told")
     given = asked.parse_args()
     network = load_gearbox_network(given.network)[0] if given.network else shipped_network()[0]
+    if given.from_nothing:
+        from_nothing(given.path, given.seed, network, given.from_nothing, given.passes)
+        return
     print(
         "| part | seen | gearboxes | network | regression on it | logistic | boosting | over logistic | over boosting |"
     )
