@@ -162,9 +162,9 @@ def from_nothing(path: Path, seed: int, network: GearboxNetwork, begun: int, kno
     for side in SIDES:
         places = np.flatnonzero(asked.seen[side])
         weights = bootstrap_weights(asked.owner[places], seed)
-        own, *others = (asked.area(rank, places, weights) for rank in ranks[side])
+        area, *others = (asked.area(rank, places, weights) for rank in ranks[side])
         mean, count = np.mean(others, axis=0), np.unique(asked.owner).size
-        cells = [limits(one, count) for one in (own, mean, own - mean)]
+        cells = [limits(one, count) for one in (area, mean, area - mean)]
         values = [float(each[0]) for each in others]
         spread = f"{min(values):.3f} to {max(values):.3f}"
         print(f"| {side} | {count} | {cells[0]} | {cells[1]} | {spread} | {cells[2]} |", flush=True)
