@@ -177,8 +177,8 @@ def _refuse_other_rate(machine: Machine, recording: MeasuredRecording) -> None:
         shaft = gear_names(machine.train)[0].gears[0]
         raise UsageError(
             f"{recording.path}: {recording.fs_hz:g} Hz; the references {machine.fs_hz:g} Hz, their {shaft} "
-            f"{machine.speed_hz.min():.4g} to {machine.speed_hz.max():.4g} Hz, this one {hz:.4g}. Correct the rate: "
-            f"{in_rig(f'fs_hz: {machine.fs_hz:g}')}"
+            f"{machine.speed_hz.min():.4g} to {machine.speed_hz.max():.4g} Hz, this one {hz:.4g}. If the rate is "
+            f"wrong: {in_rig(f'fs_hz: {machine.fs_hz:g}')}; if it is right, give references at this speed"
         )
 
 

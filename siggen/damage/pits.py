@@ -181,6 +181,8 @@ def clustered_centres(
 def _cut_normal(uniform: FloatArray, mean: float, spread: float, low: float, high: float) -> FloatArray:
     from scipy.special import ndtr, ndtri
 
+    if not spread >= 0.0:
+        raise ValueError(f"received spread {spread!r} m; allowed: at least 0")
     if spread == 0.0:
         return np.full(uniform.size, min(max(mean, low), high))
     first, last = ndtr((low - mean) / spread), ndtr((high - mean) / spread)

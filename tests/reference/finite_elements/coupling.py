@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from siggen.gears.gear_pair import GearPair, SpurGear
+from siggen.mesh.body_coupling import ring_torsion
 from siggen.mesh.mesh_stiffness import mesh_stiffness
 from siggen.mesh.stiffness_options import StiffnessOptions
 from tests.reference.finite_elements.calibration import ToothShape
-from tests.reference.finite_elements.comparison import SIZE
+from tests.reference.finite_elements.comparison import SIZE, paper_a_pair
 from tests.reference.finite_elements.neighbour_compliance import coupled_compliance
+
+SHARES = np.array([0.01, 0.5, 0.99])
+HELD_OUT_GEARS = 16
+OTHER_RACKS = (
+    (ToothShape(26, 1.7, 0.3), ToothShape(26, 1.7, 0.3)),
+    (ToothShape(26, 4.0, -0.2), ToothShape(26, 4.0, -0.2)),
+    (ToothShape(60, 2.5, 0.5), ToothShape(60, 2.5, -0.5)),
+    (ToothShape(30, 3.0, 0.0, 25.0, 0.2), ToothShape(30, 3.0, 0.0, 25.0, 0.2)),
+    (ToothShape(30, 3.0, 0.0, 17.5), ToothShape(30, 3.0, 0.0, 17.5)),
+)
 
 
 def neighbour_compliance(gear: SpurGear, roll: np.ndarray, size: float = SIZE) -> np.ndarray:
@@ -33,6 +45,19 @@ def neighbour_compliance(gear: SpurGear, roll: np.ndarray, size: float = SIZE) -
     """
     full = coupled_compliance(gear, np.stack([roll, roll + 2 * np.pi / gear.teeth]), size)
     return np.einsum("iaja->aij", full)
+
+
+def coupling_table() -> Iterator[str]:
+    """Lines of the deflection a neighbour's load adds, relative to a tooth's own, along the double contact."""
+    pair = paper_a_pair()
+    yield "| z | double contact | of the lower tooth | of the upper tooth | both / own sum | ring torsion |"
+    yield "|---|---|---|---|---|---|"
+    for gear, (first, last) in zip((pair.pinion, pair.gear), pair.active_flank, strict=True):
+        room = last - 2 * np.pi / gear.teeth - first
+        for share, c in zip(SHARES, neighbour_compliance(gear, first + SHARES * room), strict=True):
+            torsion = 2 * ring_torsion(gear, 0.3) / np.trace(c)
+            columns = (c[0, 1] / c[0, 0], c[1, 0] / c[1, 1], 2 * c[0, 1] / np.trace(c), torsion)
+            yield f"| {gear.teeth} | {share:.2f} | " + " | ".join(f"{x:.3f}" for x in columns) + " |"
 
 
 def shape_pair(one: ToothShape, two: ToothShape) -> GearPair:

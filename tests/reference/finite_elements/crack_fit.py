@@ -46,6 +46,7 @@ TEETH = (
     Plan(USUAL, (0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.45), (35, 45, 60, 70), FIT_SIZE),
     Plan(OTHER_RACKS, (0.03, 0.1, 0.2, 0.32, 0.45), (35, 50, 70), COARSE_SIZE),
 )
+"""What is fitted; `crack_comparison` compares with these and with others."""
 LEAST_OF_TOOTH, TYPICAL_ERROR = 0.004, 0.04
 SIZES = {
     "OPENING": 9, "BELOW": 5, "ASIDE": 4, "ASIDE_PER_SLIMNESS": 1, "SLIDING": 5, "CLOSE": 3, "CLOSE_LENGTH": 1,

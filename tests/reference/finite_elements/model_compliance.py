@@ -8,9 +8,9 @@ from siggen.gears.gear_pair import GearPair, SpurGear
 from siggen.mesh.mesh_stiffness import StiffnessOptions, tooth_compliance
 
 MODELS = {
-    "base circle + profile": StiffnessOptions(beam="base_circle"),
-    "root circle + profile": StiffnessOptions(beam="root_circle"),
-    "rack trochoid + rack": StiffnessOptions(beam="rack_trochoid"),
+    "base circle + profile": StiffnessOptions(beam="base_circle", foundation_angle="profile"),
+    "root circle + profile": StiffnessOptions(beam="root_circle", foundation_angle="profile"),
+    "rack trochoid + rack": StiffnessOptions(beam="rack_trochoid", foundation_angle="rack"),
 }
 CALIBRATED_MODEL = "rack trochoid + rack"
 

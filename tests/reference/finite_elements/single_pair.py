@@ -18,8 +18,10 @@ from siggen.mesh.stiffness_options import StiffnessOptions
 TEETH, MODULE_M, FACE_M, YOUNG_PA = (17, 43), 1e-3, 10e-3, 206e9
 RADIUS_RATIO = 1.4
 """Root over bore of both gears, assumed: the one with which the linear contact gives 18.95 N/(mm µm)."""
+LINE_LOADS = (100e3, 300e3)
 WIDTHS_PER_M = 1e9
 """N/m² in one N/(mm µm)."""
+PLACES = 5
 
 
 def small_pair() -> GearPair:
