@@ -16,8 +16,6 @@ import numpy as np
 
 from siggen.gears.gear_pair import GearPair
 from siggen.gears.spur_gear import SpurGear, transverse_gear
-from siggen.mesh.stiffness_options import StiffnessOptions
-from siggen.mesh.tooth_compliance import tooth_compliance
 from tests.reference.finite_elements.extruded_body import face_line
 from tests.reference.finite_elements.face_compliance import face_compliance
 from tests.reference.finite_elements.helical_body import HelicalBody
@@ -30,7 +28,6 @@ from tests.reference.finite_elements.tooth_mesh import tooth_mesh
 
 SIZE, ELEMENT = 0.2, 0.8
 """Edge length on the tooth and of the middle elements across the face, in modules; halving both adds 0.7 to 1.0 %."""
-HELICES_DEG = (0.0, 10.0, 15.0, 20.0, 25.0)
 
 
 class HelicalCase(NamedTuple):
@@ -55,13 +52,6 @@ class HelicalCase(NamedTuple):
 
 
 BENCH_ROOTS = (2.325, 4.45)
-CASES = (
-    *(HelicalCase("bench", (18, 47), BENCH_ROOTS, 20e-3, helix) for helix in HELICES_DEG),
-    *(HelicalCase("wide bores", (18, 47), (1.6, 1.6), 20e-3, helix) for helix in (0.0, 20.0)),
-    *(HelicalCase("narrow face", (18, 47), BENCH_ROOTS, 10e-3, helix) for helix in (0.0, 25.0)),
-    *(HelicalCase("wide face", (18, 47), BENCH_ROOTS, 40e-3, helix) for helix in (0.0, 10.0)),
-    *(HelicalCase("large gears", (30, 80), (3.0, 6.0), 25e-3, helix) for helix in (0.0, 15.0, 25.0)),
-)
 """A helix of 0 says what the mesh, and a face that is no plane stress, leave."""
 
 
@@ -129,10 +119,3 @@ def line_compliances(pair: GearPair, which: str, teeth: int = 1) -> np.ndarray:
         deflection = np.einsum("np,pn->n", in_plane, moved[:, 0]) + np.einsum("np,pn->n", along, moved_axial[:, 0])
         found.append([float(width * (share @ deflection))])
     return np.array(found)
-
-
-def _model(pair: GearPair, which: str) -> float:
-    """Return the same by the model, whose slices give way as at their own heights."""
-    across = (np.arange(200) + 0.5) / 200 - 0.5
-    whole = tooth_compliance(pair, which, line_rolls(pair, which, across)[0], StiffnessOptions()).total
-    return float(whole.mean() * pair.youngs_modulus_pa * pair.face_width_m)
